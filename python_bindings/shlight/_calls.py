@@ -29,6 +29,7 @@ _CORE_AXES = {
     "light": 1,
     "material": 1,
     "cos_theta_o": 0,
+    "phi_o": 0,
     "irradiance": 1,
     "eye": 1,
     "target": 1,

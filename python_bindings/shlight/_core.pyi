@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
 from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
@@ -86,6 +87,21 @@ def surface_shader(
     refractions: Sequence[tuple[int, int, int, int | None, bool]],
 ) -> SurfaceShader: ...
 
+class LobeTable:
+    @property
+    def is_isotropic(self) -> bool: ...
+    def values(self, wi: _Floats, wo: _Floats) -> NDArray[np.float64]: ...
+    def with_sampling_errors(self, errors: Sequence[float]) -> LobeTable: ...
+    def bsdf(self, order: int) -> Bsdf: ...
+
+def lobe_table(
+    half_vector: bool,
+    axes: Sequence[tuple[Sequence[float], float]],
+    channels: int,
+    entries: _Floats,
+    sampling_errors: Sequence[float],
+) -> LobeTable: ...
+
 class Bsdf:
     __array_ufunc__: None
     @overload
@@ -126,8 +142,32 @@ class Bsdf:
     ) -> Shader: ...
     @staticmethod
     def layer(top: Bsdf, base: Bsdf) -> Bsdf: ...
-    def coefficients(self, cos_theta_o: ArrayLike, order: int) -> NDArray[np.float32]: ...
-    def residual(self, cos_theta_o: ArrayLike, order: int) -> NDArray[np.float64]: ...
+    @staticmethod
+    def from_function(
+        f: Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike],
+        *,
+        isotropic: bool = True,
+        order: int | Literal["auto"] = "auto",
+        samples: int | None = None,
+    ) -> Bsdf: ...
+    @staticmethod
+    def from_table(
+        values: ArrayLike,
+        theta_in: ArrayLike,
+        phi_in: ArrayLike,
+        theta_out: ArrayLike,
+        phi_out: ArrayLike,
+        *,
+        order: int | Literal["auto"] = "auto",
+    ) -> Bsdf: ...
+    @staticmethod
+    def read(path: str | PathLike[str], *, order: int | Literal["auto"] = "auto") -> Bsdf: ...
+    def coefficients(
+        self, cos_theta_o: ArrayLike, order: int, phi_o: ArrayLike | None = None
+    ) -> NDArray[np.float32]: ...
+    def residual(self, cos_theta_o: ArrayLike, order: int, phi_o: ArrayLike | None = None) -> NDArray[np.float64]: ...
+    @property
+    def is_anisotropic(self) -> bool: ...
     def evaluate(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]: ...
     def __add__(self, other: Bsdf) -> Bsdf: ...
     def __radd__(self, start: Literal[0]) -> Bsdf: ...
@@ -139,6 +179,7 @@ def shade_spheres(
     radii: _Floats,
     bsdf: Bsdf,
     cos_theta_o: _Floats,
+    azimuth: _Floats,
     order: int,
     tolerance: float,
     threads: int,
@@ -148,6 +189,7 @@ def shade_polygons(
     vertices: _Floats,
     bsdf: Bsdf,
     cos_theta_o: _Floats,
+    azimuth: _Floats,
     order: int,
     tolerance: float,
     threads: int,
@@ -159,6 +201,7 @@ def shade_disks(
     half_axes_v: _Floats,
     bsdf: Bsdf,
     cos_theta_o: _Floats,
+    azimuth: _Floats,
     order: int,
     tolerance: float,
     threads: int,

@@ -41,6 +41,7 @@ Sampling = Literal["solid_angle", "area", "bsdf", "mis"]
 class _Settings(TypedDict, total=False):
     """Keywords of every function here, for the overloads, which differ in the result only."""
 
+    phi_o: ArrayLike | None
     order: int | Literal["auto"]
     tolerance: float
     threads: int
@@ -82,6 +83,7 @@ def shade_spheres(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
+    phi_o: ArrayLike | None = None,
     order: int | Literal["auto"] = "auto",
     tolerance: float = DEFAULT_TOLERANCE,
     threads: int = 0,
@@ -95,6 +97,9 @@ def shade_spheres(
 
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
     cos_theta_o: (...), in [0, 1]. Leading axes broadcast; lights that share a view should be neighbours along the last.
+    phi_o: (...), azimuth of the view [rad] in the frame of the lights, whose x is then the surface's tangent:
+    ω_o = (sinθ_o cosφ_o, sinθ_o sinφ_o, cosθ_o); None: 0. Only anisotropic materials reflect another radiance for
+    lights that turn with the view.
     order: "auto" for whatever meets the tolerance, or 1 … 64 for harmonics of that order.
     tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel.
     method: "auto", or where shlight_tools is built one of its methods.shading_methods(), with its options; those of a
@@ -110,11 +115,15 @@ def shade_spheres(
     r = checked_array("radii", radii, dtype)
     cosines = _checked_views(cos_theta_o)
     check_last("centers", c, 3)
-    shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
+    phi = _checked_azimuths(phi_o, bsdf, method)
+    shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape, phi_o=phi.shape)
+    c = _seen_by(phi, c)
     if own:
         refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
         settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-        flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings, wanted)
+        views = _views(cosines, phi, bsdf, shape)
+        spheres, radius = rows(c, shape, 3), rows(r, shape)
+        flat = _core.shade_spheres(spheres, radius, bsdf, views[0], views[1], *settings, wanted)
     else:
         lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
         options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
@@ -147,6 +156,7 @@ def shade_polygons(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
+    phi_o: ArrayLike | None = None,
     order: int | Literal["auto"] = "auto",
     tolerance: float = DEFAULT_TOLERANCE,
     threads: int = 0,
@@ -169,12 +179,15 @@ def shade_polygons(
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     cosines = _checked_views(cos_theta_o)
-    shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape)
+    phi = _checked_azimuths(phi_o, bsdf, method)
+    shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape, phi_o=phi.shape)
+    v = _seen_by(phi[..., None], v)
     polygons = rows(v, shape, *v.shape[-2:])
     if own:
         refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
         settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-        flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings, wanted)
+        views = _views(cosines, phi, bsdf, shape)
+        flat = _core.shade_polygons(polygons, bsdf, views[0], views[1], *settings, wanted)
     else:
         lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
         options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
@@ -213,6 +226,7 @@ def shade_disks(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
+    phi_o: ArrayLike | None = None,
     order: int | Literal["auto"] = "auto",
     tolerance: float = DEFAULT_TOLERANCE,
     threads: int = 0,
@@ -232,12 +246,18 @@ def shade_disks(
     dtype = given_type(centers, half_axes_u, half_axes_v)
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     cosines = _checked_views(cos_theta_o)
+    phi = _checked_azimuths(phi_o, bsdf, method)
     shape = broadcast(
-        centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1], cos_theta_o=cosines.shape
+        centers=c.shape[:-1],
+        half_axes_u=u.shape[:-1],
+        half_axes_v=v.shape[:-1],
+        cos_theta_o=cosines.shape,
+        phi_o=phi.shape,
     )
-    lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
+    lights = (rows(_seen_by(phi, c), shape, 3), rows(_seen_by(phi, u), shape, 3), rows(_seen_by(phi, v), shape, 3))
+    views = _views(cosines, phi, bsdf, shape)
     settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-    flat = _core.shade_disks(*lights, bsdf, _views(cosines, shape), *settings, wanted)
+    flat = _core.shade_disks(*lights, bsdf, views[0], views[1], *settings, wanted)
     return _result(*flat, shape, wanted)
 
 
@@ -245,9 +265,33 @@ def _checked_views(cos_theta_o: ArrayLike) -> Floats:
     return checked_array("cos_theta_o", cos_theta_o, np.float64)
 
 
-def _views(cosines: Floats, shape: tuple[int, ...]) -> Floats:
-    """One for each light, or one for all of them."""
-    return cosines.reshape(1) if cosines.size == 1 else rows(cosines, shape)
+def _checked_azimuths(phi_o: ArrayLike | None, bsdf: _core.Bsdf, method: str) -> Floats:
+    if bsdf.is_anisotropic and method != "auto":
+        raise ValueError(f"method must be 'auto' for an anisotropic bsdf, got {method!r}")
+    phi = np.zeros(()) if phi_o is None else checked_array("phi_o", phi_o, np.float64)
+    if not np.isfinite(phi).all():
+        raise ValueError("phi_o must be finite")
+    return phi
+
+
+def _seen_by(phi: Floats, vectors: Floats) -> Floats:
+    """Vectors in the frame whose x is that of the view."""
+    if not phi.any():
+        return vectors
+    c, s = np.cos(phi), np.sin(phi)
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    turned = np.broadcast_arrays(c * x + s * y, c * y - s * x, z)
+    return np.stack(turned, axis=-1).astype(vectors.dtype)
+
+
+def _views(cosines: Floats, phi: Floats, bsdf: _core.Bsdf, shape: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Cosines and azimuths, one for each light, or one for all of them."""
+    known = phi if bsdf.is_anisotropic else np.zeros(())
+    return _one_or_all(cosines, shape), _one_or_all(known, shape)
+
+
+def _one_or_all(values: Floats, shape: tuple[int, ...]) -> Floats:
+    return values.reshape(1) if values.size == 1 else rows(values, shape)
 
 
 def _order(order: int | Literal["auto"]) -> int:

@@ -8,6 +8,7 @@ namespace shlight::python {
 void bind_arguments(pybind11::module_& m);
 void bind_coefficients(pybind11::module_& m);
 void bind_kernels(pybind11::module_& m);
+void bind_tables(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);
 void bind_shader(pybind11::module_& m);
 void bind_shading(pybind11::module_& m);

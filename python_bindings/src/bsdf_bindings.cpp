@@ -18,6 +18,7 @@
 #include "base/unit_direction.h"
 #include "bindings.h"
 #include "shlight/bsdf.h"
+#include "shlight/lobe_table.h"
 #include "shlight/plain_fit.h"
 #include "whole_objects.h"
 
@@ -39,6 +40,21 @@ void check_cosine(double cosine) {
     }
 }
 
+std::pair<AnyArray<double>, AnyArray<double>> broadcast_pair(const std::string& name, const AnyArray<double>& a,
+                                                             const std::string& other, const AnyArray<double>& b) {
+    py::sequence both;
+    try {
+        both = py::module_::import("numpy").attr("broadcast_arrays")(a, b);
+    } catch (const py::error_already_set& error) {
+        if (!error.matches(PyExc_ValueError)) {
+            throw;
+        }
+        throw std::invalid_argument(name + " and " + other + " have leading axes that do not broadcast");
+    }
+    return {AnyArray<double>(py::reinterpret_borrow<py::object>(both[0])),
+            AnyArray<double>(py::reinterpret_borrow<py::object>(both[1]))};
+}
+
 std::shared_ptr<const PlainFit> fit_of(const Lobe& lobe) {
     if (is_mirror(lobe.shape)) {
         throw std::invalid_argument("a perfect mirror (roughness below 0.003) has no coefficients");
@@ -46,78 +62,129 @@ std::shared_ptr<const PlainFit> fit_of(const Lobe& lobe) {
     return plain_fit(lobe.shape);
 }
 
-using LobeFits = std::vector<std::pair<Lobe, std::shared_ptr<const PlainFit>>>;
+/// A lobe's fit by one order, at views of the frame whose x is the surface's tangent.
+class LobeFit {
+  public:
+    LobeFit(const Lobe& lobe, int order)
+        : lobe_(lobe), order_(order), fit_(is_anisotropic(lobe.shape) ? nullptr : fit_of(lobe)) {}
 
-LobeFits fits_of(const Bsdf& bsdf) {
-    LobeFits fits;
-    for (const Lobe& lobe : bsdf.lobes()) {
-        fits.emplace_back(lobe, fit_of(lobe));
+    Rgb scale(double cosine) const { return lobe_.scale(static_cast<float>(cosine)); }
+
+    PlainView at(double cosine, double azimuth) const {
+        if (fit_ == nullptr) {
+            TableShape shape = std::get<TableShape>(lobe_.shape);
+            shape.azimuth = azimuth;
+            return plain_view(shape, cosine, order_);
+        }
+        PlainView view{std::vector<float>(static_cast<std::size_t>(coefficient_count(order_))), fit_->norm(cosine),
+                       fit_->residual(cosine, order_)};
+        std::vector<float> terms(static_cast<std::size_t>(cosine_count(order_)));
+        fit_->coefficients(cosine, order_, terms.data());
+        for (int l = 0; l < order_; ++l) {
+            for (int m = 0; m <= l; ++m) {
+                const double term = terms[static_cast<std::size_t>(cosine_index(l, m))];
+                const auto at = [&](int degree) -> float& {
+                    return view.coefficients[static_cast<std::size_t>(coefficient_index(l, degree))];
+                };
+                at(-m) = static_cast<float>(term * std::sin(m * azimuth));
+                at(m) = static_cast<float>(term * std::cos(m * azimuth));
+            }
+        }
+        return view;
     }
-    return fits;
-}
 
-/// Coefficients at one view angle: `channels` rows of order² numbers, which are 0 where m < 0.
-void write_coefficients(const LobeFits& lobes, double cosine, int order, int channels, float* out) {
-    const int row = coefficient_count(order);
-    std::fill_n(out, channels * row, 0.0F);
-    std::vector<float> terms(static_cast<std::size_t>(cosine_count(order)));
-    for (const auto& [lobe, fit] : lobes) {
-        const Rgb scale = lobe.scale(static_cast<float>(cosine));
-        fit->coefficients(cosine, order, terms.data());
+  private:
+    Lobe lobe_;
+    int order_;
+    std::shared_ptr<const PlainFit> fit_;  // null for an anisotropic lobe
+};
+
+using LobeFits = std::vector<LobeFit>;
+
+/// Coefficients at one view: `channels` rows of order² numbers.
+void write_coefficients(const LobeFits& lobes, double cosine, double azimuth, int channels, std::size_t row,
+                        float* out) {
+    std::fill_n(out, static_cast<std::size_t>(channels) * row, 0.0F);
+    for (const LobeFit& lobe : lobes) {
+        const Rgb scale = lobe.scale(cosine);
+        const PlainView view = lobe.at(cosine, azimuth);
         for (int channel = 0; channel < channels; ++channel) {
-            for (int l = 0; l < order; ++l) {
-                for (int m = 0; m <= l; ++m) {
-                    out[channel * row + coefficient_index(l, m)] +=
-                        scale[channel] * terms[static_cast<std::size_t>(cosine_index(l, m))];
-                }
+            for (std::size_t i = 0; i < row; ++i) {
+                out[static_cast<std::size_t>(channel) * row + i] += scale[channel] * view.coefficients[i];
             }
         }
     }
 }
 
-Array<float> coefficients(const Bsdf& bsdf, const py::object& views, const py::object& bands) {
-    const AnyArray<double> cos_theta_o = array_from<double>("cos_theta_o", views);
-    const int order = int_from("order", bands);
-    check_order(order);
+/// Upper bound of the residual: errors of lobes that share a channel are added, since they may have the same sign.
+double residual_at(const LobeFits& lobes, double cosine, double azimuth) {
+    double largest = 0;
+    std::array<double, 3> errors{}, squares{};  // squares: a lower bound of the squared norm, without overlaps of lobes
+    for (const LobeFit& lobe : lobes) {
+        const Rgb scale = lobe.scale(cosine);
+        const PlainView view = lobe.at(cosine, azimuth);
+        for (int channel = 0; channel < 3; ++channel) {
+            const auto c = static_cast<std::size_t>(channel);
+            const double size = double{scale[channel]} * view.norm;
+            errors[c] += size * view.residual;
+            squares[c] += size * size;
+        }
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+        largest = std::max(largest, squares[c] > 0 ? errors[c] / std::sqrt(squares[c]) : 0.0);
+    }
+    return largest;
+}
+
+/// Views that broadcast, and fits, for `coefficients` and `residual`.
+struct WantedViews {
+    AnyArray<double> cosines, azimuths;
+    int order;
+    LobeFits lobes;
+
+    WantedViews(const Bsdf& bsdf, const py::object& cos_theta_o, const py::object& bands, const py::object& phi_o)
+        : order(int_from("order", bands)) {
+        check_order(order);
+        const AnyArray<double> angles =
+            phi_o.is_none() ? AnyArray<double>(py::array(py::float_(0.0))) : array_from<double>("phi_o", phi_o);
+        check_all_finite("phi_o", values(angles));
+        std::tie(cosines, azimuths) =
+            broadcast_pair("cos_theta_o", array_from<double>("cos_theta_o", cos_theta_o), "phi_o", angles);
+        for (const double cosine : values(cosines)) {
+            check_cosine(cosine);
+        }
+        for (const Lobe& lobe : bsdf.lobes()) {
+            lobes.emplace_back(lobe, order);
+        }
+    }
+};
+
+Array<float> coefficients(const Bsdf& bsdf, const py::object& cos_theta_o, const py::object& bands,
+                          const py::object& phi_o) {
+    const WantedViews views(bsdf, cos_theta_o, bands, phi_o);
     const int channels = is_grey(bsdf) ? 1 : 3;
-    std::vector<py::ssize_t> added{coefficient_count(order)};
+    const int row = coefficient_count(views.order);
+    std::vector<py::ssize_t> added{row};
     if (channels == 3) {
         added.insert(added.begin(), 3);
     }
-    Array<float> out(shape_with(cos_theta_o, 0, added));
-    const LobeFits lobes = fits_of(bsdf);
+    Array<float> out(shape_with(views.cosines, 0, added));
     float* data = out.mutable_data();
-    for (const double cosine : values(cos_theta_o)) {
-        check_cosine(cosine);
-        write_coefficients(lobes, cosine, order, channels, data);
-        data += channels * coefficient_count(order);
+    for (std::size_t i = 0; i < values(views.cosines).size(); ++i) {
+        write_coefficients(views.lobes, values(views.cosines)[i], values(views.azimuths)[i], channels,
+                           static_cast<std::size_t>(row), data);
+        data += channels * row;
     }
     return out;
 }
 
-/// Upper bound of the residual: errors of lobes are added, since they may have the same sign.
-double residual_at(const LobeFits& lobes, double cosine, int order) {
-    check_cosine(cosine);
-    double error = 0;
-    double squares = 0;  // lower bound of the squared norm, without the positive overlaps of lobes
-    for (const auto& [lobe, fit] : lobes) {
-        const Rgb scale = lobe.scale(static_cast<float>(cosine));
-        const double size = std::max({scale.x, scale.y, scale.z}) * fit->norm(cosine);
-        error += size * fit->residual(cosine, order);
-        squares += size * size;
-    }
-    return squares > 0 ? error / std::sqrt(squares) : 0;
-}
-
-Array<double> residual(const Bsdf& bsdf, const py::object& views, const py::object& bands) {
-    const AnyArray<double> cos_theta_o = array_from<double>("cos_theta_o", views);
-    const int order = int_from("order", bands);
-    check_order(order);
-    Array<double> out(shape_with(cos_theta_o, 0, {}));
-    const LobeFits lobes = fits_of(bsdf);
+Array<double> residual(const Bsdf& bsdf, const py::object& cos_theta_o, const py::object& bands,
+                       const py::object& phi_o) {
+    const WantedViews views(bsdf, cos_theta_o, bands, phi_o);
+    Array<double> out(shape_with(views.cosines, 0, {}));
     double* data = out.mutable_data();
-    for (const double cosine : values(cos_theta_o)) {
-        *data++ = residual_at(lobes, cosine, order);
+    for (std::size_t i = 0; i < values(views.cosines).size(); ++i) {
+        *data++ = residual_at(views.lobes, values(views.cosines)[i], values(views.azimuths)[i]);
     }
     return out;
 }
@@ -131,17 +198,7 @@ AnyArray<double> directions_from(const char* name, const py::object& value) {
 Array<double> evaluate(const Bsdf& bsdf, const py::object& wi, const py::object& wo) {
     const AnyArray<double> lights = directions_from("wi", wi);
     const AnyArray<double> views = directions_from("wo", wo);
-    py::sequence both;
-    try {
-        both = py::module_::import("numpy").attr("broadcast_arrays")(lights, views);
-    } catch (const py::error_already_set& error) {
-        if (!error.matches(PyExc_ValueError)) {
-            throw;
-        }
-        throw std::invalid_argument("wi and wo have leading axes that do not broadcast");
-    }
-    const AnyArray<double> incoming(py::reinterpret_borrow<py::object>(both[0]));
-    const AnyArray<double> outgoing(py::reinterpret_borrow<py::object>(both[1]));
+    const auto [incoming, outgoing] = broadcast_pair("wi", lights, "wo", views);
     const auto i = vectors("wi", incoming);
     const auto o = vectors("wo", outgoing);
     const bool grey = is_grey(bsdf);
@@ -167,6 +224,10 @@ bool is_expression(const py::handle& value) {
 
 py::object shader_function(const char* name) {
     return py::module_::import("shlight.nodes").attr(name);
+}
+
+py::object table_function(const char* name) {
+    return py::module_::import("shlight._tables").attr(name);
 }
 
 py::object lambert(const py::object& albedo) {
@@ -197,7 +258,8 @@ Bsdf layer(const py::object& top, const py::object& base) {
 std::string described(const LobeShape& shape) {
     const auto* const ggx = std::get_if<GgxShape>(&shape);
     if (ggx == nullptr) {
-        return std::holds_alternative<LambertShape>(shape) ? "lambert" : "lobe";
+        const char* const other = is_anisotropic(shape) ? "anisotropic table" : "table";
+        return std::holds_alternative<LambertShape>(shape) ? "lambert" : other;
     }
     constexpr std::array kCurves = {"", ", fresnel='schlick'", ", fresnel='dielectric'", ", fresnel='dip'"};
     std::ostringstream text;
@@ -220,28 +282,43 @@ std::string repr(const Bsdf& bsdf) {
     return bsdf.lobes().empty() ? "Bsdf(black)" : text.str() + ")";
 }
 
-using GgxState = std::tuple<double, int, double>;  // alpha, Fresnel, ior
-using LobeState = std::tuple<std::optional<GgxState>, std::array<float, 3>, std::optional<std::vector<float>>>;
+using GgxState = std::tuple<double, int, double>;                     // alpha, Fresnel, ior
+using TableState = std::tuple<std::shared_ptr<LobeTable>, int, int>;  // table, channel, order
+using ShapeState = std::variant<std::monostate, GgxState, TableState>;
+using LobeState = std::tuple<ShapeState, std::array<float, 3>, std::optional<std::vector<float>>>;
+
+ShapeState shape_state_of(const Lobe& lobe) {
+    if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape)) {
+        return GgxState{ggx->alpha, static_cast<int>(ggx->fresnel), ggx->ior};
+    }
+    if (const auto* table = std::get_if<TableShape>(&lobe.shape)) {
+        return TableState{std::const_pointer_cast<LobeTable>(table->table), table->channel, lobe.only_order};
+    }
+    return {};
+}
 
 std::vector<LobeState> state_of(const Bsdf& bsdf) {
     std::vector<LobeState> state;
     for (const Lobe& lobe : bsdf.lobes()) {
-        std::optional<GgxState> shape;
-        if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape)) {
-            shape = {ggx->alpha, static_cast<int>(ggx->fresnel), ggx->ior};
-        }
-        state.push_back({shape,
+        state.push_back({shape_state_of(lobe),
                          {lobe.color.x, lobe.color.y, lobe.color.z},
                          lobe.weight ? std::optional(lobe.weight->nodes()) : std::nullopt});
     }
     return state;
 }
 
-LobeShape shape_from(const std::optional<GgxState>& state) {
-    if (!state) {
+LobeShape shape_from(const ShapeState& state) {
+    if (std::holds_alternative<std::monostate>(state)) {
         return LambertShape{};
     }
-    const auto [alpha, fresnel, ior] = *state;
+    if (const auto* of_table = std::get_if<TableState>(&state)) {
+        const auto& [table, channel, order] = *of_table;
+        if (table == nullptr || channel < 0 || channel >= table->channels()) {
+            throw std::invalid_argument("state does not describe a lobe");
+        }
+        return TableShape{table, channel};
+    }
+    const auto [alpha, fresnel, ior] = std::get<GgxState>(state);
     if (!(alpha >= 0 && alpha <= 1 && ior > 1 && std::isfinite(ior)) || fresnel < static_cast<int>(Fresnel::one) ||
         fresnel > static_cast<int>(Fresnel::dielectric)) {
         throw std::invalid_argument("state does not describe a lobe");
@@ -252,11 +329,54 @@ LobeShape shape_from(const std::optional<GgxState>& state) {
 Bsdf bsdf_from(const std::vector<LobeState>& state) {
     Bsdf sum;
     for (const auto& [shape, color, nodes] : state) {
+        const auto* of_table = std::get_if<TableState>(&shape);
         sum = sum + Bsdf::lobe(shape_from(shape), {color[0], color[1], color[2]},
-                               nodes ? std::make_shared<const ViewWeight>(*nodes) : nullptr);
+                               nodes ? std::make_shared<const ViewWeight>(*nodes) : nullptr,
+                               of_table != nullptr ? std::get<2>(*of_table) : 0);
     }
     return sum;
 }
+
+/// The first line of this and the next two is the signature, as pybind11 writes those of other functions.
+constexpr const char* kFromFunctionDoc =
+    R"(from_function(f, *, isotropic=True, order='auto', samples=None)
+
+A material of one's own.
+
+f(view, light) takes unit vectors above the horizon, two arrays (n, 3), in the frame of the surface's tangent x and
+normal z, and returns the BRDF [1/sr], (n,) or (n, 3) for RGB, without the cosine. It is called while the table is made
+and never again.
+isotropic: f does not change when both directions are turned about the normal, or mirrored. Otherwise the material is
+anisotropic: see phi_o of shade_spheres.
+order: "auto", or the only one, 1 … 64, in which harmonics shade it where the order of a call is "auto"; light for which
+they err by more than the tolerance is integrated by cubature of the table.
+samples: steps of a right angle in the angles of half vectors (Rusinkiewicz 1998), 8 … 128; 64 where f is isotropic, 20
+otherwise. `residual` includes what the table lacks of f.
+Raises ValueError naming the argument, for an f that is negative, not finite, or not isotropic, too.)";
+
+constexpr const char* kFromTableDoc =
+    R"(from_table(values, theta_in, phi_in, theta_out, phi_out, *, order='auto')
+
+A BRDF from a table.
+
+values: [1/sr], without the cosine, (theta_in, phi_in, theta_out, phi_out), or with a last axis of RGB; ≥ 0. in: to the
+light; out: to the viewer. Between the angles f is linear in each.
+theta_…: from the normal, in 0 … π/2, increasing; to π/2 the last two are extrapolated, but not below 0.
+phi_…: about the normal from the tangent, increasing, around the circle; one more at 2π may repeat the first. With one
+phi_in f depends on phi_out - phi_in only, and if that runs from 0 to π, it is the same for mirrored directions.
+All angles are radians. order: see from_function. Raises ValueError naming the argument.)";
+
+constexpr const char* kReadDoc =
+    R"(read(path, *, order='auto')
+
+A measured BRDF.
+
+UTIA's .bin (Filip & Vávra 2014, "Template-Based Sampling of Anisotropic BRDFs"): anisotropic, θ every 15°, φ every
+7.5°, 3 × 288 × 288 doubles, which are taken as they are.
+MERL's .binary (Matusik et al. 2003, "A Data-Driven Reflectance Model"): isotropic, 90 × 90 × 180 × 3 doubles, scaled by
+1/1500, 1.15/1500 and 1.66/1500. Directions that were not measured, marked by negative numbers, get the values beside
+them; directions and their mirror images get the mean of both.
+order: see from_function. Raises OSError for a file that cannot be read, ValueError for one that is neither.)";
 
 constexpr const char* kDoc =
     R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
@@ -280,12 +400,18 @@ void bind_bsdf(py::module_& m) {
     {
         py::options options;
         options.disable_function_signatures();
-        type.def_static(
-            "principled",
-            [](const py::args& positional, const py::kwargs& named) {
-                return shader_function("principled")(*positional, **named);
-            },
-            kPrincipledDoc);
+        const auto forward = [&](const char* name, const char* doc, py::object (*function)(const char*)) {
+            type.def_static(
+                name,
+                [=](const py::args& positional, const py::kwargs& named) {
+                    return function(name)(*positional, **named);
+                },
+                doc);
+        };
+        forward("principled", kPrincipledDoc, &shader_function);
+        forward("from_function", kFromFunctionDoc, &table_function);
+        forward("from_table", kFromTableDoc, &table_function);
+        forward("read", kReadDoc, &table_function);
     }
     type.def_static(
             "lambert", &lambert, py::arg("albedo"),
@@ -308,16 +434,20 @@ s = (1 - cosθ_d)⁵ or, with `ior`, finite and greater than 1, the dielectric F
 Raises ValueError naming the argument.)")
         .def_static("layer", &layer, py::arg("top"), py::arg("base"),
                     "top + base · (1 - largest channel of top's directional albedo at the view angle).")
-        .def("coefficients", &coefficients, py::arg("cos_theta_o"), py::arg("order"),
+        .def("coefficients", &coefficients, py::arg("cos_theta_o"), py::arg("order"), py::arg("phi_o") = py::none(),
              R"(Coefficients of f·cos for ω_o = (sinθ_o, 0, cosθ_o): shape (..., order²), float32, or (..., 3, order²)
 if the material has colour. They fit the upper hemisphere only: use them with light clipped at the horizon.
+phi_o: the view's azimuth [rad] in the frame of the coefficients, whose x is the surface's tangent; broadcasts; None: 0.
 Raises ValueError for cos_theta_o outside [0, 1] or an order outside 1 … 64.)")
-        .def(
-            "residual", &residual, py::arg("cos_theta_o"), py::arg("order"),
-            R"(Relative L2 error of that fit over the upper hemisphere, shape (...). For a sum of lobes an upper bound.)")
+        .def("residual", &residual, py::arg("cos_theta_o"), py::arg("order"), py::arg("phi_o") = py::none(),
+             R"(Relative L2 error of that fit over the upper hemisphere, shape (...), in the colour channel where it is
+largest. For a sum of lobes an upper bound. For a function that was sampled it includes what its table lacks.)")
         .def("evaluate", &evaluate, py::arg("wi"), py::arg("wo"),
-             R"(f·cos for directions (..., 3) in the shading frame, which broadcast against each other:
-shape (...), or (..., 3) if the material has colour. Zero where either direction lies below the horizon.)")
+             R"(f·cos for directions (..., 3) in the shading frame, whose x is the tangent of an anisotropic material.
+They broadcast against each other: shape (...), or (..., 3) if the material has colour. Zero where either direction lies
+below the horizon.)")
+        .def_property_readonly("is_anisotropic", &Bsdf::is_anisotropic,
+                               "Whether the azimuth of the view from the surface's tangent on matters.")
         .def("__repr__", &repr)
         .def(py::self + py::self)
         .def(

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_core, m) {
     shlight::python::bind_arguments(m);
     shlight::python::bind_kernels(m);
     shlight::python::bind_coefficients(m);
+    shlight::python::bind_tables(m);
     shlight::python::bind_bsdf(m);
     shlight::python::bind_shader(m);
     shlight::python::bind_shading(m);

@@ -28,64 +28,71 @@ std::span<const double> part_of(std::span<const double> views, std::size_t first
     return views.size() == 1 ? views : views.subspan(first, count);
 }
 
-/// cos_theta_o: one for each light, or one for all.
+/// cos_theta_o, azimuth: one for each light, or one for all.
 template <class T>
 py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf, const Array<double>& cos_theta_o,
-                  int order, double tolerance, int threads, bool with_effort) {
+                  const Array<double>& azimuth, int order, double tolerance, int threads, bool with_effort) {
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
     const auto views = values(cos_theta_o);
+    const auto turns = values(azimuth);
     const Shaded out(c.size(), with_effort);
-    shade_parts(c.size(), bsdf, {order, tolerance}, threads,
-                [&](LightShader& shader, std::size_t first, std::size_t count) {
-                    shader.spheres(c.subspan(first, count), r.subspan(first, count), part_of(views, first, count),
-                                   out.colors.subspan(first, count), out.effort_of(first, count));
-                });
+    shade_parts(
+        c.size(), bsdf, {order, tolerance}, threads, [&](LightShader& shader, std::size_t first, std::size_t count) {
+            shader.spheres(c.subspan(first, count), r.subspan(first, count), part_of(views, first, count),
+                           out.colors.subspan(first, count), out.effort_of(first, count), part_of(turns, first, count));
+        });
     return out.result();
 }
 
 template <class T>
-py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<double>& cos_theta_o, int order,
-                   double tolerance, int threads, bool with_effort) {
+py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<double>& cos_theta_o,
+                   const Array<double>& azimuth, int order, double tolerance, int threads, bool with_effort) {
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto views = values(cos_theta_o);
+    const auto turns = values(azimuth);
     const Shaded out(v.size() / k, with_effort);
     shade_parts(v.size() / k, bsdf, {order, tolerance}, threads,
                 [&](LightShader& shader, std::size_t first, std::size_t count) {
                     shader.polygons(v.subspan(first * k, count * k), static_cast<int>(k), part_of(views, first, count),
-                                    out.colors.subspan(first, count), out.effort_of(first, count));
+                                    out.colors.subspan(first, count), out.effort_of(first, count),
+                                    part_of(turns, first, count));
                 });
     return out.result();
 }
 
 template <class T>
 py::tuple disks(const Array<T>& centers, const Array<T>& half_axes_u, const Array<T>& half_axes_v, const Bsdf& bsdf,
-                const Array<double>& cos_theta_o, int order, double tolerance, int threads, bool with_effort) {
+                const Array<double>& cos_theta_o, const Array<double>& azimuth, int order, double tolerance,
+                int threads, bool with_effort) {
     const auto c = vectors("centers", centers);
     const auto u = vectors("half_axes_u", half_axes_u);
     const auto v = vectors("half_axes_v", half_axes_v);
     const auto views = values(cos_theta_o);
+    const auto turns = values(azimuth);
     const Shaded out(c.size(), with_effort);
-    shade_parts(
-        c.size(), bsdf, {order, tolerance}, threads, [&](LightShader& shader, std::size_t first, std::size_t count) {
-            shader.disks(c.subspan(first, count), u.subspan(first, count), v.subspan(first, count),
-                         part_of(views, first, count), out.colors.subspan(first, count), out.effort_of(first, count));
-        });
+    shade_parts(c.size(), bsdf, {order, tolerance}, threads,
+                [&](LightShader& shader, std::size_t first, std::size_t count) {
+                    shader.disks(c.subspan(first, count), u.subspan(first, count), v.subspan(first, count),
+                                 part_of(views, first, count), out.colors.subspan(first, count),
+                                 out.effort_of(first, count), part_of(turns, first, count));
+                });
     return out.result();
 }
 
 template <class T>
 void bind(py::module_& m) {
     m.def("shade_spheres", &spheres<T>, py::arg("centers").noconvert(), py::arg("radii").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
-          py::arg("with_effort"));
+          py::arg("cos_theta_o").noconvert(), py::arg("azimuth").noconvert(), py::arg("order"), py::arg("tolerance"),
+          py::arg("threads"), py::arg("with_effort"));
     m.def("shade_polygons", &polygons<T>, py::arg("vertices").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
-          py::arg("with_effort"));
+          py::arg("cos_theta_o").noconvert(), py::arg("azimuth").noconvert(), py::arg("order"), py::arg("tolerance"),
+          py::arg("threads"), py::arg("with_effort"));
     m.def("shade_disks", &disks<T>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
-          py::arg("half_axes_v").noconvert(), py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"),
-          py::arg("tolerance"), py::arg("threads"), py::arg("with_effort"));
+          py::arg("half_axes_v").noconvert(), py::arg("bsdf"), py::arg("cos_theta_o").noconvert(),
+          py::arg("azimuth").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
+          py::arg("with_effort"));
 }
 
 }  // namespace

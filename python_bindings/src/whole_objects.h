@@ -16,8 +16,8 @@ pybind11::custom_type_setup constructed_when_new();
 
 /// Copies and pickles objects by state(object), in Python's built-in types, from which from_state makes an equal
 /// object.
-template <class T, class State, class FromState>
-void define_pickling(pybind11::class_<T>& type, const State& state, const FromState& from_state) {
+template <class T, class... Options, class State, class FromState>
+void define_pickling(pybind11::class_<T, Options...>& type, const State& state, const FromState& from_state) {
     type.def_static("_from_state", from_state);
     type.def("__reduce__", [state](const T& self) {
         const auto restored = pybind11::module_::import("shlight._pickling").attr("restored");

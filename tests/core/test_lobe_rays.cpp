@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "random_input.h"
+#include "shlight/lobe_table.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -25,6 +28,16 @@ struct Vectors {
     std::vector<float> x, y, z;
 };
 
+std::shared_ptr<const LobeTable> random_table() {
+    const TableAxis theta({0.0, 0.4, 0.9, 1.3, 1.6}, 0);
+    const TableAxis phi({0.2, 1.0, 2.3, 3.5, 5.0}, 6.283185307179586);
+    RandomInput random(7);
+    std::vector<float> values(5 * 5 * 5 * 5 * 3);
+    std::generate(values.begin(), values.end(), [&] { return static_cast<float>(random.uniform(0.5, 1.0)); });
+    return std::make_shared<const LobeTable>(TableAngles::directions, std::array{theta, phi, theta, phi}, 3, values,
+                                             std::vector<float>());
+}
+
 std::vector<LobeShape> shapes() {
     std::vector<LobeShape> list = {LambertShape()};
     for (const Diffuse kind : {Diffuse::oren_nayar, Diffuse::oren_nayar_loss, Diffuse::bumped}) {
@@ -35,6 +48,8 @@ std::vector<LobeShape> shapes() {
             list.emplace_back(GgxShape{alpha, fresnel, 1.45});
         }
     }
+    static const std::shared_ptr<const LobeTable> table = random_table();
+    list.emplace_back(TableShape{table, 2, 0.7});
     return list;
 }
 

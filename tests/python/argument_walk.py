@@ -27,6 +27,10 @@ from shlight_tools import methods
 TRIANGLE = [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, -1.0, 1.0]]
 FACES = [[0, 1, 2]]
 GGX = Bsdf.ggx(0.3, [0.9, 0.5, 0.1])
+TABLE = {
+    "values": np.ones((2, 3, 2, 3)),
+    **{"theta_in": [0.0, 1.0], "phi_in": [0.0, 2.0, 4.0], "theta_out": [0.0, 1.0], "phi_out": [0.0, 2.0, 4.0]},
+}
 SPHERE = {"centers": [0.0, 0.0, 2.0], "radii": 1.0}
 CAP = {"axes": [0.0, 0.0, 2.0], "half_angles": 1.0}
 POLYGON = {"vertices": TRIANGLE}
@@ -34,7 +38,7 @@ DISK = {"centers": [0.0, 0.0, 1.0], "half_axes_u": [1.0, 0.0, 0.0], "half_axes_v
 COEFFICIENTS = {"order": 3, "clip": True, "dtype": np.float32, "threads": 0, "out": None}
 EXACT = {**COEFFICIENTS, "method": "exact", "tolerance": None, "samples": None, "seed": None, "sampling": None}
 RANDOM = {**COEFFICIENTS, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "area"}
-SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "tolerance": 1e-3, "threads": 0, "return_effort": True}
+SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "phi_o": 0.3, "tolerance": 1e-3, "threads": 0, "return_effort": True}
 AUTO = {**SHADED, "order": "auto", "method": "auto", "samples": None, "seed": None, "sampling": None}
 SAMPLED = {**SHADED, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "mis"}
 SEEN_BY = {"shadows": True, "diffuse": True, "glossy": True, "camera": False, "group": "key"}
@@ -180,8 +184,14 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {**dict.fromkeys(inspect.signature(Bsdf.principled).parameters, 0.5), "several_bounces": False},
     ),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),
-    "Bsdf.coefficients": (GGX.coefficients, {"cos_theta_o": 0.5, "order": 3}),
-    "Bsdf.residual": (GGX.residual, {"cos_theta_o": 0.5, "order": 3}),
+    "Bsdf.from_function": (
+        Bsdf.from_function,
+        {"f": lambda view, light: light[:, 2], "isotropic": True, "order": "auto", "samples": 8},
+    ),
+    "Bsdf.from_table": (Bsdf.from_table, {**TABLE, "order": "auto"}),
+    "Bsdf.read": (Bsdf.read, {"path": "missing.bin", "order": "auto"}),
+    "Bsdf.coefficients": (GGX.coefficients, {"cos_theta_o": 0.5, "order": 3, "phi_o": 0.3}),
+    "Bsdf.residual": (GGX.residual, {"cos_theta_o": 0.5, "order": 3, "phi_o": 0.3}),
     "Bsdf.evaluate": (GGX.evaluate, {"wi": [0.0, 0.6, 0.8], "wo": [0.0, 0.0, 1.0]}),
     "Bsdf.__mul__": (GGX.__mul__, {"factor": 0.5}),
     "Bsdf.__rmul__": (GGX.__rmul__, {"factor": 0.5}),
@@ -299,6 +309,7 @@ RELATED = {
     "radius": ("intensity",),
     "tangents": ("normals",),
     "target": ("up",),
+    **dict.fromkeys(("theta_in", "phi_in", "theta_out", "phi_out"), ("values",)),
     "triangles": ("material_indices",),
     "vertices": ("normals", "triangles"),
 }
@@ -337,7 +348,7 @@ def complaint(call: str, name: str, value: Any) -> str | None:
             result = function(**{**arguments, name: value})
     except (TypeError, ValueError) as error:
         named = str(error).startswith((name, *RELATED.get(name, ())))
-        return None if named or name in ("progress", "on_update") else f"{type(error).__name__}: {error}"
+        return None if named or name in ("f", "progress", "on_update") else f"{type(error).__name__}: {error}"
     except OSError as error:
         return None if name == "path" else f"{type(error).__name__}: {error}"
     except shlight.RenderCancelled:

@@ -127,6 +127,7 @@ class Worker {
     std::vector<RayHit> ray_hits_;
     Hits hits_{0};  // weights are those of reflection_
     std::vector<std::size_t> pixel_of_hit_;
+    std::vector<double> azimuth_of_hit_;
     SurfaceReflection reflection_;
     LightInView light_;
     std::vector<Ray> shadow_rays_;
@@ -192,6 +193,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
     p.scene.rays().intersect(rays_, ray_hits_);
     hits_.clear();
     pixel_of_hit_.clear();
+    azimuth_of_hit_.clear();
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         const std::size_t pixel = pixel_of_camera_ray_[i];
         if (!ray_hits_[i].missed()) {
@@ -204,6 +206,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
             hits_.add(surface, {}, frame, view_cosine(frame.z, -direction), {}, {}, 0, PathKind::direct, 0);
             pixel_of_hit_.push_back(pixel);
+            azimuth_of_hit_.push_back(p.scene.placed().azimuth(ray_hits_[i], frame));
             continue;
         }
         if (rays_[i].empty()) {
@@ -219,7 +222,8 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
 }
 
 void Worker::shade(std::size_t hit) {
-    reflection_.reset(picture_->scene.materials()[hits_.material[hit]].bsdf, hits_.cos_theta_o[hit]);
+    reflection_.reset(picture_->scene.materials()[hits_.material[hit]].bsdf, hits_.cos_theta_o[hit],
+                      azimuth_of_hit_[hit]);
     RandomNumbers& random = random_[pixel_of_hit_[hit]];
     const double choice = random.next();
     const RandomDirection reflected = reflection_.sample(choice, random.point());

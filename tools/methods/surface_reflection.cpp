@@ -13,7 +13,7 @@ double largest(const Rgb& color) {
 
 }  // namespace
 
-void SurfaceReflection::reset(const Bsdf& bsdf, float cos_theta_o) {
+void SurfaceReflection::reset(const Bsdf& bsdf, float cos_theta_o, double azimuth) {
     const double cosine = cos_theta_o;
     view_ = Vec3d(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
     mirrored_ = Rgb(0);
@@ -21,11 +21,12 @@ void SurfaceReflection::reset(const Bsdf& bsdf, float cos_theta_o) {
     parts_.clear();
     for (const Lobe& lobe : bsdf.lobes()) {
         const Rgb scale = lobe.scale(cos_theta_o);
-        const double albedo = std::max(0.0, lobe.albedo(cosine));
+        const LobeShape shape = is_anisotropic(lobe.shape) ? with_parameter(lobe.shape, azimuth) : lobe.shape;
+        const double albedo = std::max(0.0, lobe.fit ? lobe.albedo(cosine) : lobe_albedo(shape, cosine));
         if (is_mirror(lobe.shape)) {
             mirrored_ += scale * static_cast<float>(albedo);
         } else if (scale != Rgb(0)) {
-            parts_.push_back({lobe.shape, scale, largest(scale) * albedo});
+            parts_.push_back({shape, scale, largest(scale) * albedo});
             albedo_ += parts_.back().albedo;
         }
     }

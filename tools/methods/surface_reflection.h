@@ -16,7 +16,8 @@ namespace shlight::methods {
 /// A material at one view. Memory is reused from view to view.
 class SurfaceReflection {
   public:
-    void reset(const Bsdf& bsdf, float cos_theta_o);
+    /// azimuth: of the view from the surface's tangent on.
+    void reset(const Bsdf& bsdf, float cos_theta_o, double azimuth);
 
     const Vec3d& view() const { return view_; }
     /// f·cos in the shading frame of all lobes except mirrors, or of the diffuse or glossy ones only.

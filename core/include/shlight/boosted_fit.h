@@ -29,7 +29,7 @@ Boost lobe_boost(const LobeShape& shape, double cos_theta_o);
 class BoostedFit {
   public:
     /// order: the only one, 1 … 64, or 0 for all that a hit may choose from. Lambert has no terms beyond order 2, which
-    /// stands for all higher orders. Precondition: not a mirror.
+    /// stands for all higher orders. Precondition: neither a mirror nor anisotropic.
     explicit BoostedFit(const LobeShape& shape, int order = 0);
 
     const LobeShape& shape() const { return shape_; }

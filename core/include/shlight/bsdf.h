@@ -28,15 +28,18 @@ class ViewWeight {
 /// One lobe of a material: f·cos = color · weight(θ_o) · shape.
 struct Lobe {
     LobeShape shape;
-    std::shared_ptr<const BoostedFit> fit;  ///< null for a mirror
+    std::shared_ptr<const BoostedFit> fit;  ///< null for a mirror, and for an anisotropic shape
     Rgb color;
     std::shared_ptr<const ViewWeight> weight;  ///< null: 1
     /// Not 0: the width varies from hit to hit, equally for all lobes of a material with the same number. The shape's
     /// width is then unused, and there is no fit.
     std::uint32_t varying_width = 0;
+    int only_order = 0;  ///< of the fit; 0: several
 
+    /// Whether lobe_parameter() of its shape is another at each hit.
+    bool varies() const { return varying_width != 0 || is_anisotropic(shape); }
     Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }
-    /// ∫ shape dω.
+    /// ∫ shape dω; of an anisotropic shape at its own azimuth.
     double albedo(double cos_theta_o) const;
 };
 
@@ -52,7 +55,9 @@ class Bsdf {
     Bsdf() = default;  ///< black
 
     /// One lobe. Throws std::invalid_argument for a colour outside [0, kLargestColor].
-    static Bsdf lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight = nullptr);
+    /// order: the only one in which harmonics shade it, 1 … 64; 0: the cheapest of several.
+    static Bsdf lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight = nullptr,
+                     int order = 0);
     /// Throws std::invalid_argument for an albedo outside [0, kLargestColor].
     static Bsdf lambert(const Rgb& albedo);
     /// GGX with height-correlated Smith masking and F = f0 + (1 - f0) s; s = (1 - cosθ_d)⁵, or with ior > 1 the exact
@@ -60,6 +65,8 @@ class Bsdf {
     /// is 0 there, as in Cycles. alpha = roughness²; below kLeastRoughness the lobe is a perfect mirror.
     /// Throws for roughness outside [0, 1], f0 outside [0, kLargestColor], or an ior that is not finite and above 1.
     static Bsdf ggx(float roughness, const Rgb& f0, double ior = 0);
+    /// The channels of a table, RGB or grey, as lobes. order: as of lobe().
+    static Bsdf table(const std::shared_ptr<const LobeTable>& table, int order = 0);
     /// top + base · (1 - max over RGB of top's directional albedo).
     static Bsdf layer(const Bsdf& top, const Bsdf& base);
 
@@ -68,7 +75,9 @@ class Bsdf {
     Bsdf scaled(const Rgb& factor) const;
 
     const std::vector<Lobe>& lobes() const { return lobes_; }
-    /// f·cos in the shading frame; 0 for mirrors.
+    /// Whether the azimuth of the view from the surface's tangent on matters.
+    bool is_anisotropic() const;
+    /// f·cos in the shading frame, whose x is the tangent; 0 for mirrors.
     Rgb evaluate(const Vec3d& wi, const Vec3d& wo) const;
     /// ∫ f·cos dω.
     Rgb albedo(double cos_theta_o) const;

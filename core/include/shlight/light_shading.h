@@ -21,7 +21,8 @@ struct ShadeSettings {
 /// Shades batches of lights with one material. Memory is reused; one per thread.
 ///
 /// Views: cos_theta_o of each light, or one for all; ω_o = (sinθ_o, 0, cosθ_o). Lights with the same view are cheaper
-/// if they are adjacent.
+/// if they are adjacent. azimuth: of the view from the surface's tangent on [rad], of each light, or one for all; none:
+/// 0. Only anisotropic materials read it.
 /// radiance: reflected towards ω_o, from lights of unit radiance. effort: empty, or for each light the largest order or
 /// number of values of f·cos that a lobe took; 0 where the light is hidden or mirrored.
 /// T: float or double. A result depends only on the light and its view.
@@ -36,15 +37,16 @@ class LightShader {
     LightShader& operator=(const LightShader&) = delete;
 
     /// Sphere lights, from centre and radius in the shading frame. Throws std::invalid_argument naming the argument:
-    /// sizes that do not fit, cos_theta_o outside [0, 1], and as sphere_coefficients does.
+    /// sizes that do not fit, cos_theta_o outside [0, 1], an azimuth that is not finite, and as sphere_coefficients
+    /// does.
     template <class T>
     void spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const double> cos_theta_o,
-                 std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
+                 std::span<Rgb> radiance, std::span<std::int32_t> effort = {}, std::span<const double> azimuth = {});
 
     /// Planar polygons of vertex_count vertices each, in either winding; throws as polygon_coefficients does, too.
     template <class T>
     void polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const double> cos_theta_o,
-                  std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
+                  std::span<Rgb> radiance, std::span<std::int32_t> effort = {}, std::span<const double> azimuth = {});
 
     /// Disks and ellipses as in disk_coefficients, which also defines the exceptions. A polygon replaces the disk, to
     /// within about 1e-4 of its L_00, or the tolerance if that is smaller (docs/theory.md, 5.5); harmonics of a given
@@ -52,7 +54,7 @@ class LightShader {
     template <class T>
     void disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
                std::span<const Vec3<T>> half_axes_v, std::span<const double> cos_theta_o, std::span<Rgb> radiance,
-               std::span<std::int32_t> effort = {});
+               std::span<std::int32_t> effort = {}, std::span<const double> azimuth = {});
 
   private:
     std::unique_ptr<class LightShaderWork> work_;

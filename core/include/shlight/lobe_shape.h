@@ -9,6 +9,7 @@
 
 #include <compare>
 #include <cstddef>
+#include <memory>
 #include <variant>
 
 #include <glm/vec2.hpp>
@@ -17,9 +18,11 @@
 
 namespace shlight {
 
+class LobeTable;
+
 /// f·cos = cosθ_i / π.
 struct LambertShape {
-    static constexpr bool kGlossy = false;
+    bool is_glossy() const { return false; }
     double width() const { return 1; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
@@ -47,7 +50,7 @@ enum class Diffuse {
 struct DiffuseShape {
     Diffuse kind;
 
-    static constexpr bool kGlossy = false;
+    bool is_glossy() const { return false; }
     double width() const { return 1; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
@@ -75,7 +78,7 @@ struct GgxShape {
     Fresnel fresnel = Fresnel::one;  ///< the factor included in f·cos
     double ior = 1.5;                ///< used by Fresnel::dielectric only
 
-    static constexpr bool kGlossy = true;
+    bool is_glossy() const { return true; }
     double width() const { return alpha; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
@@ -91,10 +94,38 @@ struct GgxShape {
     auto operator<=>(const GgxShape&) const = default;
 };
 
-using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape>;
+struct TableShape;
+
+using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape, TableShape>;
+
+/// A colour channel of a table, times cosθ_i.
+struct TableShape {
+    std::shared_ptr<const LobeTable> table;
+    int channel = 0;
+    double azimuth = 0;  ///< 0 … 2π: of ω_o about the normal, from the surface's tangent on; for anisotropic tables
+
+    bool is_glossy() const;
+    double width() const;
+    double value(const Vec3d& wi, const Vec3d& wo) const;
+    double albedo(double cos_theta_o) const;
+    /// Draws from sampled().
+    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
+    double density(const Vec3d& wo, const Vec3d& wi) const;
+    double largest_density(const Vec3d& wo) const;
+    /// Lambert's lobe, or a GGX lobe whose tails reach what a table holds beside its peak.
+    LobeShape sampled() const;
+
+    auto operator<=>(const TableShape&) const = default;
+};
 
 /// Half width of the peak at the mirror direction [rad]; 1 for shapes without a peak.
 double lobe_width(const LobeShape& shape);
+/// Whether f·cos depends on the azimuth of ω_o from the surface's tangent on.
+bool is_anisotropic(const LobeShape& shape);
+/// The azimuth of an anisotropic shape, or the width of another, which may differ from hit to hit.
+double lobe_parameter(const LobeShape& shape);
+/// The shape with another parameter; unchanged if it has only one.
+LobeShape with_parameter(const LobeShape& shape, double parameter);
 /// The shape with another width; unchanged if it has only one.
 LobeShape with_width(const LobeShape& shape, double width);
 /// Whether the shape has a peak: it is then shaded in a boosted frame, and lights may exclude it ("visible to glossy

@@ -19,12 +19,12 @@ namespace shlight {
 /// The fits of one shape, of all orders and views.
 class PlainFit {
   public:
-    /// Precondition: not a mirror.
+    /// Precondition: neither a mirror nor anisotropic.
     explicit PlainFit(const LobeShape& shape);
 
     /// √∫ (f·cos)² dω over the upper hemisphere.
     double norm(double cos_theta_o) const;
-    /// L2 error of the fit over the upper hemisphere ÷ norm.
+    /// L2 error of the fit over the upper hemisphere ÷ norm; of a table also what it lacks of a function.
     double residual(double cos_theta_o, int order) const;
     /// Writes the cosine_count(order) cosine terms for one view angle.
     void coefficients(double cos_theta_o, int order, float* cosine_terms) const;
@@ -35,9 +35,17 @@ class PlainFit {
     // One row for each tabulated view; empty for Lambert, which has a closed form.
     std::vector<double> reduced_;  // results of NormalEquations::reduce()
     std::vector<double> norms_;
+    TableShape table_;  // null unless the shape is one
 };
 
 /// The fit of a shape, shared by all callers; the most recent ones are kept. Thread-safe.
 std::shared_ptr<const PlainFit> plain_fit(const LobeShape& shape);
+
+/// The fit of an anisotropic shape at one view, whose azimuth is the shape's.
+struct PlainView {
+    std::vector<float> coefficients;  ///< order², in the frame of the surface's tangent
+    double norm, residual;            ///< as of PlainFit
+};
+PlainView plain_view(const TableShape& shape, double cos_theta_o, int order);
 
 }  // namespace shlight

@@ -130,6 +130,9 @@ void SurfacePasses::add_mattes(const Surface& surface, double share, double* pix
 
 Rgb SurfacePasses::color(const SurfaceLobe& lobe, const Surface& surface) {
     const double cosine = std::clamp(glm::dot(lobe.normal, surface.towards_viewer), 0.0, 1.0);
+    if (std::holds_alternative<TableShape>(lobe.shape)) {
+        return lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
+    }
     const double width = lobe_width(lobe.shape);
     double albedo = table(lobe.shape).albedo(width, cosine);
     if (is_glossy(lobe.shape) && !lobe.several_bounces) {

@@ -70,12 +70,12 @@ namespace {
 struct SeenCircle {
     V<Floats> x, y, z, cosine, sine;
     HalfSum half;  // axis + view, summed in double
-    V<Floats> cos_o, width;
+    V<Floats> cos_o;
 };
 
 template <class Circles, class Views>
-HWY_INLINE SeenCircle seen(const CapArrays& circles, const ViewArrays& views, const float* widths,
-                           const Circles& circle, const Views& view) {
+HWY_INLINE SeenCircle seen(const CapArrays& circles, const ViewArrays& views, const Circles& circle,
+                           const Views& view) {
     SeenCircle s;
     s.x = circle.load(circles.x);
     s.y = circle.load(circles.y);
@@ -86,7 +86,6 @@ HWY_INLINE SeenCircle seen(const CapArrays& circles, const ViewArrays& views, co
     s.half.y = s.y;
     s.half.z = rounded_sum(circle.pair(circles.z), view.pair(views.z));
     s.cos_o = view.load(views.z);
-    s.width = view.load(widths);
     return s;
 }
 
@@ -123,9 +122,10 @@ HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const Ca
                                                    V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
-    const SeenCircle s = seen(circles, views, widths, light, view);
+    const SeenCircle s = seen(circles, views, light, view);
     const auto angle = arctangent(d, s.sine, s.cosine);
-    auto rule = smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(s.width, s.half)), tolerance);
+    auto rule =
+        smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(view.load(widths), s.half)), tolerance);
     rule = hn::IfThenElseZero(hn::RebindMask(du, hn::Ge(s.z, s.sine)), rule);
     return hn::IfThenElse(hn::RebindMask(du, hn::Le(s.z, hn::Neg(s.sine))), hn::Set(du, kHidden), rule);
 }
@@ -234,10 +234,10 @@ class CapRule {
     }
 
     template <class Lobe>
-    HWY_INLINE V<Floats> integral(const Lobe& lobe, const SeenCircle& s) const {
+    HWY_INLINE V<Floats> integral(const Lobe& lobe, const SeenCircle& s, V<Floats> parameter) const {
         const Floats d;
         const auto height = hn::Div(hn::Mul(s.sine, s.sine), hn::Add(all(d, 1), s.cosine));  // 1 - cosσ
-        const auto view = lobe.view(d, s.cos_o, s.width);
+        const auto view = lobe.view(d, s.cos_o, parameter);
         const Tangents t = tangents(s);
         auto sum = hn::Zero(d);
         for (std::size_t i = 0; i < rings_.size(); ++i) {
@@ -269,7 +269,7 @@ class CapRule {
 };
 
 template <class Views, class Lobe>
-void integrate(const Lobe& lobe, const float* widths, const CapArrays& circles,
+void integrate(const Lobe& lobe, const float* parameters, const CapArrays& circles,
                std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     const Floats d;
@@ -277,20 +277,20 @@ void integrate(const Lobe& lobe, const float* widths, const CapArrays& circles,
     const CapRule cap_rule(rule);
     for (std::size_t i = 0; i < values.size(); i += kLanes) {
         const std::size_t count = std::min(kLanes, values.size() - i);
-        const SeenCircle s =
-            seen(circles, views, widths, Gather(circle_of.data() + i, count), Views(view_of.data() + i, count));
-        store_some(d, cap_rule.integral(lobe, s), count, values.data() + i);
+        const Views view(view_of.data() + i, count);
+        const SeenCircle s = seen(circles, views, Gather(circle_of.data() + i, count), view);
+        store_some(d, cap_rule.integral(lobe, s, view.load(parameters)), count, values.data() + i);
     }
 }
 
-void integrate_caps_in_lanes(const LobeShape& shape, const float* widths, const CapArrays& circles,
+void integrate_caps_in_lanes(const LobeShape& shape, const float* parameters, const CapArrays& circles,
                              std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                              std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
         if (views.shared) {
-            integrate<Broadcast>(lobe, widths, circles, circle_of, views, view_of, rule, values);
+            integrate<Broadcast>(lobe, parameters, circles, circle_of, views, view_of, rule, values);
         } else {
-            integrate<Gather>(lobe, widths, circles, circle_of, views, view_of, rule, values);
+            integrate<Gather>(lobe, parameters, circles, circle_of, views, view_of, rule, values);
         }
     });
 }
@@ -317,10 +317,10 @@ void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, co
     HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(widths, polygons, views, tolerances, view_of, rules);
 }
 
-void integrate_caps(const LobeShape& shape, const float* widths, const CapArrays& circles,
+void integrate_caps(const LobeShape& shape, const float* parameters, const CapArrays& circles,
                     std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                     std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
-    HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, widths, circles, circle_of, views, view_of, rule, values);
+    HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, parameters, circles, circle_of, views, view_of, rule, values);
 }
 
 int cap_rule_points(int rule) {

@@ -27,9 +27,9 @@ void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, co
                           const float* tolerances, std::span<const std::uint32_t> view_of,
                           std::span<std::uint8_t> rules);
 
-/// values[i] = ∫ f·cos over circle circle_of[i], above the horizon, seen by view view_of[i], by one rule. widths: of
-/// the shape at each view, in the place of its own.
-void integrate_caps(const LobeShape& shape, const float* widths, const CapArrays& circles,
+/// values[i] = ∫ f·cos over circle circle_of[i], above the horizon, seen by view view_of[i], by one rule.
+/// parameters: lobe_parameter() of the shape at each view, in the place of its own.
+void integrate_caps(const LobeShape& shape, const float* parameters, const CapArrays& circles,
                     std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                     std::span<const std::uint32_t> view_of, int rule, std::span<float> values);
 

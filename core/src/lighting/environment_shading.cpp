@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 
+#include "base/checks.h"
 #include "environment/map_lookup.h"
 #include "lobes/lobe_rays.h"
 #include "lobes/turned_lobes.h"
@@ -67,7 +68,7 @@ std::array<double, kMaxOrder> relative_errors(const float* lobe, double lobe_tai
 
 double albedo_of(const MaterialLobes& material, std::size_t lobe, float width, double cos_theta_o) {
     const Lobe& own = material.lobes()[lobe];
-    return own.varying_width != 0 ? lobe_albedo(material.shape(lobe, width), cos_theta_o) : own.albedo(cos_theta_o);
+    return own.varies() ? lobe_albedo(material.shape(lobe, width), cos_theta_o) : own.albedo(cos_theta_o);
 }
 
 /// Step of the logarithm of a varying width; between steps reflected light is interpolated linearly.
@@ -88,6 +89,9 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
     }
     spots_.emplace(*environment.map());
     for (const MaterialLobes& material : materials) {
+        if (material.is_anisotropic()) {
+            reject("environment: pictures do not light anisotropic materials; a constant radiance and lights do");
+        }
         auto& plans = plans_.emplace_back();
         auto& width_plans = width_plans_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
@@ -320,11 +324,11 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<R
     for (std::size_t point = 0; point < points.size(); ++point) {
         const MaterialLobes& material = materials_[points.material[point]];
         for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-            if (is_mirror(material.shape(lobe, points.widths(point)[lobe]))) {
+            if (is_mirror(material.shape(lobe, points.parameters(point)[lobe]))) {
                 continue;
             }
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
-            const double albedo = albedo_of(material, lobe, points.widths(point)[lobe], points.cos_theta_o[point]);
+            const double albedo = albedo_of(material, lobe, points.parameters(point)[lobe], points.cos_theta_o[point]);
             smooth[lobe * points.size() + point] =
                 static_cast<float>(albedo) * environment_->radiance(points.frame[point].z);
             report.order_counts[1] += points.hit_count(point);
@@ -338,7 +342,7 @@ void EnvironmentShading::for_each_lobe(const ShadingPoints& points, const Functi
         const Point point(*environment_->map(), points.frame[i], points.cos_theta_o[i]);
         const MaterialLobes& material = materials_[points.material[i]];
         for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-            const LobeShape shape = material.shape(lobe, points.widths(i)[lobe]);
+            const LobeShape shape = material.shape(lobe, points.parameters(i)[lobe]);
             if (!is_mirror(shape)) {
                 function(i, lobe, shape, point, lobe * points.size() + i);
             }
@@ -350,7 +354,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
     Harmonics harmonics(environment_->map()->coefficients.channels);
     for_each_lobe(points, [&](std::size_t i, std::size_t lobe, const LobeShape&, const Point& point, std::size_t at) {
         const float cosine = points.cos_theta_o[i];
-        const PlanMix mix = plans(points.material[i], lobe, points.widths(i)[lobe]);
+        const PlanMix mix = plans(points.material[i], lobe, points.parameters(i)[lobe]);
         const int order = choose(mix, cosine).order;
         Rgb& smooth = parts.smooth[at];
         harmonics.add(*mix.plans[0]->lobe, cosine, point.to_map(), order, 1 - mix.share, smooth);
@@ -362,7 +366,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
     for_each_lobe(
         points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
             const std::uint32_t material = points.material[i];
-            const float width = points.widths(i)[lobe];
+            const float width = points.parameters(i)[lobe];
             const double cosine = points.cos_theta_o[i];
             const Choice choice = choose(plans(material, lobe, width), cosine);
             if (!sees_texels(shape)) {

@@ -39,7 +39,25 @@ const ShadeSettings& checked(const ShadeSettings& settings) {
     return settings;
 }
 
-void check_views(std::span<const double> cos_theta_o, std::size_t count) {
+/// The views of some lights.
+struct LightViews {
+    In<double> cos_theta_o, azimuth;
+
+    bool shared() const { return cos_theta_o.size() == 1 && azimuth.size() <= 1; }
+    double cosine_of(std::size_t light) const { return cos_theta_o[cos_theta_o.size() == 1 ? 0 : light]; }
+    double azimuth_of(std::size_t light) const {
+        return azimuth.empty() ? 0.0 : azimuth[azimuth.size() == 1 ? 0 : light];
+    }
+};
+
+void check_views(const LightViews& views, std::size_t count) {
+    const auto [cos_theta_o, azimuth] = views;
+    if (azimuth.size() > 1) {
+        check_size("azimuth", azimuth.size(), count);
+    }
+    if (!std::all_of(azimuth.begin(), azimuth.end(), [](double angle) { return std::isfinite(angle); })) {
+        reject("azimuth must be finite");
+    }
     if (cos_theta_o.size() != 1) {
         check_size("cos_theta_o", cos_theta_o.size(), count);
     }
@@ -67,14 +85,14 @@ class LightShaderWork {
     /// Checks what is given of `count` lights, and calls shade_chunk(first, radiance, effort) for each chunk, after its
     /// views were found.
     template <class Shade>
-    void in_chunks(std::size_t count, In<double> cos_theta_o, Radiance radiance, Effort effort,
+    void in_chunks(std::size_t count, const LightViews& views, Radiance radiance, Effort effort,
                    const Shade& shade_chunk) {
-        check_views(cos_theta_o, count);
+        check_views(views, count);
         check_size("radiance", radiance.size(), count);
         check_size("effort", effort.size(), effort.empty() ? 0 : count);
         for (std::size_t first = 0; first < count; first += kLightsPerChunk) {
             const std::size_t size = std::min(kLightsPerChunk, count - first);
-            find_views(cos_theta_o, first, size);
+            find_views(views, first, size);
             shade_chunk(first, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
         }
     }
@@ -104,23 +122,37 @@ class LightShaderWork {
 
   private:
     /// Each change from light to light is a new view.
-    void find_views(In<double> cos_theta_o, std::size_t first, std::size_t count) {
-        cosines_.clear();
+    void find_views(const LightViews& views, std::size_t first, std::size_t count) {
         view_of_.assign(count, 0);
-        if (cos_theta_o.size() == 1) {
-            cosines_.push_back(cos_theta_o[0]);
-        } else {
+        cosines_.assign(1, views.cosine_of(first));
+        azimuths_.assign(1, views.azimuth_of(first));
+        if (!views.shared()) {
             cosines_.resize(count);
+            azimuths_.resize(count);
             std::uint32_t view = 0;
-            cosines_[0] = cos_theta_o[first];
             for (std::size_t i = 1; i < count; ++i) {
-                view += cos_theta_o[first + i] != cos_theta_o[first + i - 1] ? 1 : 0;
-                cosines_[view] = cos_theta_o[first + i];
+                const double cosine = views.cosine_of(first + i);
+                const double azimuth = views.azimuth_of(first + i);
+                view += cosine != cosines_[view] || azimuth != azimuths_[view] ? 1 : 0;
+                cosines_[view] = cosine;
+                azimuths_[view] = azimuth;
                 view_of_[i] = view;
             }
             cosines_.resize(view + std::size_t{1});
+            azimuths_.resize(cosines_.size());
         }
-        views_.assign(material_, cosines_, material_.weights(cosines_, weights_), {}, false);
+        views_.assign(material_, cosines_, material_.weights(cosines_, weights_), parameters(), false);
+    }
+
+    /// The azimuth of each view, for each lobe.
+    LobeParameters parameters() {
+        parameters_.clear();
+        if (material_.varies()) {
+            for (const double azimuth : azimuths_) {
+                parameters_.insert(parameters_.end(), material_.lobes().size(), static_cast<float>(azimuth));
+            }
+        }
+        return {parameters_, material_.lobes().size()};
     }
 
     /// Shades the lights in seen_.
@@ -164,7 +196,8 @@ class LightShaderWork {
     MaterialLobes material_;
     MaterialViews views_;
     LobeIntegrator batch_;
-    std::vector<double> cosines_;
+    std::vector<double> cosines_, azimuths_;
+    std::vector<float> parameters_;
     std::vector<Rgb> weights_;  // of the lobes at each view, or at all
     std::vector<std::uint32_t> view_of_;
     LocalLights seen_;
@@ -177,28 +210,31 @@ LightShader::LightShader(LightShader&&) noexcept = default;
 LightShader& LightShader::operator=(LightShader&&) noexcept = default;
 
 template <class T>
-void LightShader::spheres(In<Vec3<T>> centers, In<T> radii, In<double> cos_theta_o, Radiance radiance, Effort effort) {
+void LightShader::spheres(In<Vec3<T>> centers, In<T> radii, In<double> cos_theta_o, Radiance radiance, Effort effort,
+                          In<double> azimuth) {
     check_size("radii", radii.size(), centers.size());
-    work_->in_chunks(centers.size(), cos_theta_o, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
-        work_->shade_spheres(centers.subspan(first, sums.size()), radii.subspan(first, sums.size()), sums, most);
-    });
+    work_->in_chunks(
+        centers.size(), {cos_theta_o, azimuth}, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
+            work_->shade_spheres(centers.subspan(first, sums.size()), radii.subspan(first, sums.size()), sums, most);
+        });
 }
 
 template <class T>
 void LightShader::polygons(In<Vec3<T>> vertices, int vertex_count, In<double> cos_theta_o, Radiance radiance,
-                           Effort effort) {
+                           Effort effort, In<double> azimuth) {
     check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);
-    work_->in_chunks(count, cos_theta_o, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
-        work_->shade_polygons(vertices.subspan(first * k, sums.size() * k), k, sums, most);
-    });
+    work_->in_chunks(count, {cos_theta_o, azimuth}, radiance, effort,
+                     [&](std::size_t first, Radiance sums, Effort most) {
+                         work_->shade_polygons(vertices.subspan(first * k, sums.size() * k), k, sums, most);
+                     });
 }
 
 template <class T>
 void LightShader::disks(In<Vec3<T>> centers, In<Vec3<T>> half_axes_u, In<Vec3<T>> half_axes_v, In<double> cos_theta_o,
-                        Radiance radiance, Effort effort) {
+                        Radiance radiance, Effort effort, In<double> azimuth) {
     const std::size_t count = centers.size();
     check_size("half_axes_u", half_axes_u.size(), count);
     check_size("half_axes_v", half_axes_v.size(), count);
@@ -206,19 +242,22 @@ void LightShader::disks(In<Vec3<T>> centers, In<Vec3<T>> half_axes_u, In<Vec3<T>
         check_disk({Vec3d(centers[i]), Vec3d(half_axes_u[i]), Vec3d(half_axes_v[i])},
                    std::numeric_limits<T>::epsilon());
     }
-    work_->in_chunks(count, cos_theta_o, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
-        const auto disk = [&](std::size_t i) {
-            return Ellipse{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]), Vec3d(half_axes_v[first + i])};
-        };
-        work_->shade_disks(disk, sums, most);
-    });
+    work_->in_chunks(
+        count, {cos_theta_o, azimuth}, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
+            const auto disk = [&](std::size_t i) {
+                return Ellipse{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]), Vec3d(half_axes_v[first + i])};
+            };
+            work_->shade_disks(disk, sums, most);
+        });
 }
 
-template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort);
-template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort);
-template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort);
-template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort);
-template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<double>, Radiance, Effort);
-template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<double>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort, In<double>);
+template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort, In<double>);
+template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort, In<double>);
+template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort, In<double>);
+template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<double>, Radiance, Effort,
+                                 In<double>);
+template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<double>, Radiance, Effort,
+                                 In<double>);
 
 }  // namespace shlight

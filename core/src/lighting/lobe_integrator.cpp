@@ -10,6 +10,7 @@
 #include "lobes/boundary_integral.h"
 #include "regions/polygon_kernels.h"
 #include "regions/spherical_polygon.h"
+#include "simd/dot_products.h"
 
 namespace shlight {
 namespace {
@@ -252,15 +253,55 @@ void LobeIntegrator::mirror(const LobeViews& lobe, Lights& lights) {
     }
 }
 
+std::span<float> LobeIntegrator::rows_of(int order) {
+    rows_.resize(items_.size() * static_cast<std::size_t>(coefficient_count(order)));
+    return rows_;
+}
+
+void LobeIntegrator::contract(LobeViews& lobe, int order, std::span<const float> rows) {
+    const auto size = static_cast<std::size_t>(coefficient_count(order));
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        dot_products(lobe.coefficients(order, item_views_[k]), &rows[k * size], size, 1, &item_values_[k]);
+    }
+}
+
 void LobeIntegrator::by_harmonics(LobeViews& lobe, const CapArrays& circles, int order) {
+    if (lobe.is_anisotropic()) {
+        contracted_circles_.resize(items_.size());
+        for (std::size_t k = 0; k < items_.size(); ++k) {
+            const std::uint32_t i = items_[k];
+            contracted_circles_.set(k, {axis_of(circles, i), circles.cosine[i], circles.sine[i]});
+        }
+        const std::span<float> rows = rows_of(order);
+        cap_rows(contracted_circles_.arrays(), items_.size(), order, true, rows.data(), Output::cached);
+        contract(lobe, order, rows);
+        return;
+    }
     shade_caps(circles, items_, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
 void LobeIntegrator::by_harmonics(LobeViews& lobe, const SphereArrays& spheres, int order) {
+    if (lobe.is_anisotropic()) {
+        const std::span<float> rows = rows_of(order);
+        cap_rows(spheres, items_.size(), order, true, rows.data(), Output::cached);
+        contract(lobe, order, rows);
+        return;
+    }
     shade_caps(spheres, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
 void LobeIntegrator::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order) {
+    if (lobe.is_anisotropic()) {
+        contracted_vertices_.clear();
+        for (const std::uint32_t i : items_) {
+            const auto own = polygons.polygon(i);
+            contracted_vertices_.insert(contracted_vertices_.end(), own.begin(), own.end());
+        }
+        const std::span<float> rows = rows_of(order);
+        polygon_rows(std::span<const Vec3d>(contracted_vertices_), polygons.vertex_count(), order, true, rows.data());
+        contract(lobe, order, rows);
+        return;
+    }
     shade_polygons(polygons.vertices(), polygons.vertex_count(), items_, lobe.arrays(order, item_views_), item_views_,
                    item_values_);
 }
@@ -281,7 +322,7 @@ void LobeIntegrator::by_largest_order(LobeViews& lobe, const Lights& lights) {
 }
 
 void LobeIntegrator::by_rule(const LobeViews& lobe, const CapArrays& circles, int rule) {
-    integrate_caps(lobe.shape(), lobe.widths(), circles, items_, lobe.positions().directions(), item_views_, rule,
+    integrate_caps(lobe.shape(), lobe.parameters(), circles, items_, lobe.positions().directions(), item_views_, rule,
                    item_values_);
     const int points = cap_rule_points(rule);
     for (const std::uint32_t light : items_) {
@@ -290,7 +331,7 @@ void LobeIntegrator::by_rule(const LobeViews& lobe, const CapArrays& circles, in
 }
 
 void LobeIntegrator::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
-    integrate_polygons(lobe.shape(), lobe.widths(), polygons.vertices(), polygons.vertex_count(), items_,
+    integrate_polygons(lobe.shape(), lobe.parameters(), polygons.vertices(), polygons.vertex_count(), items_,
                        lobe.positions().directions(), item_views_, rule, item_values_);
     const int points = polygon_rule_points(rule, polygons.vertex_count());
     for (const std::uint32_t light : items_) {

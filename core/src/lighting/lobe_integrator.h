@@ -80,6 +80,9 @@ class LobeIntegrator {
     void by_harmonics(LobeViews& lobe, const CapArrays& circles, int order);
     void by_harmonics(LobeViews& lobe, const SphereArrays& spheres, int order);
     void by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order);
+    /// Anisotropic lobes: by order² coefficients of each item's light, in `rows`.
+    void contract(LobeViews& lobe, int order, std::span<const float> rows);
+    std::span<float> rows_of(int order);
     void by_rule(const LobeViews& lobe, const CapArrays& circles, int rule);
     void by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule);
     /// Outlines cost most: lights that are bright enough are left to harmonics of the largest order.
@@ -104,6 +107,9 @@ class LobeIntegrator {
     std::span<float> item_values_;
     std::vector<std::uint32_t> all_, gathered_views_;
     std::vector<float> gathered_values_;
+    CapBatch contracted_circles_;
+    std::vector<Vec3d> contracted_vertices_;
+    std::vector<float> rows_;  // coefficients of lights
 };
 
 }  // namespace shlight

@@ -239,7 +239,7 @@ HWY_INLINE V<Floats> integral(const Lobe& lobe, const PolygonGroup& group, std::
 }
 
 template <class Views, class Lobe>
-void integrate(const Lobe& lobe, const float* widths, std::span<const Vec3d> vertices, int vertex_count,
+void integrate(const Lobe& lobe, const float* parameters, std::span<const Vec3d> vertices, int vertex_count,
                std::span<const std::uint32_t> polygon_of, const ViewArrays& views,
                std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     const Floats d;
@@ -249,19 +249,19 @@ void integrate(const Lobe& lobe, const float* widths, std::span<const Vec3d> ver
         group.assign(vertices, static_cast<std::size_t>(vertex_count), polygon_of.subspan(i, count));
         const Views view(view_of.data() + i, count);
         const auto value =
-            integral(lobe, group, polygon_rule(rule), view.pair(views.x), view.pair(views.z), view.load(widths));
+            integral(lobe, group, polygon_rule(rule), view.pair(views.x), view.pair(views.z), view.load(parameters));
         store_some(d, value, count, values.data() + i);
     }
 }
 
-void integrate_polygons_in_lanes(const LobeShape& shape, const float* widths, std::span<const Vec3d> vertices,
+void integrate_polygons_in_lanes(const LobeShape& shape, const float* parameters, std::span<const Vec3d> vertices,
                                  int vertex_count, std::span<const std::uint32_t> polygon_of, const ViewArrays& views,
                                  std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
         if (views.shared) {
-            integrate<Broadcast>(lobe, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
+            integrate<Broadcast>(lobe, parameters, vertices, vertex_count, polygon_of, views, view_of, rule, values);
         } else {
-            integrate<Gather>(lobe, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
+            integrate<Gather>(lobe, parameters, vertices, vertex_count, polygon_of, views, view_of, rule, values);
         }
     });
 }
@@ -275,11 +275,11 @@ namespace shlight {
 
 HWY_EXPORT(integrate_polygons_in_lanes);
 
-void integrate_polygons(const LobeShape& shape, const float* widths, std::span<const Vec3d> vertices, int vertex_count,
-                        std::span<const std::uint32_t> polygon_of, const ViewArrays& views,
+void integrate_polygons(const LobeShape& shape, const float* parameters, std::span<const Vec3d> vertices,
+                        int vertex_count, std::span<const std::uint32_t> polygon_of, const ViewArrays& views,
                         std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     HWY_DYNAMIC_DISPATCH(integrate_polygons_in_lanes)
-    (shape, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
+    (shape, parameters, vertices, vertex_count, polygon_of, views, view_of, rule, values);
 }
 
 int polygon_rule_points(int rule, int vertex_count) {

@@ -14,10 +14,10 @@
 namespace shlight {
 
 /// values[i] = ∫ f·cos over polygon polygon_of[i], clipped by the horizon, seen by view view_of[i], by one of the rules
-/// that choose_polygon_rules() chooses from. vertices: vertex_count of each polygon, in either winding; widths: of the
-/// shape at each view, in the place of its own.
-void integrate_polygons(const LobeShape& shape, const float* widths, std::span<const Vec3d> vertices, int vertex_count,
-                        std::span<const std::uint32_t> polygon_of, const ViewArrays& views,
+/// that choose_polygon_rules() chooses from. vertices: vertex_count of each polygon, in either winding; parameters: of
+/// the shape at each view, in the place of its own.
+void integrate_polygons(const LobeShape& shape, const float* parameters, std::span<const Vec3d> vertices,
+                        int vertex_count, std::span<const std::uint32_t> polygon_of, const ViewArrays& views,
                         std::span<const std::uint32_t> view_of, int rule, std::span<float> values);
 
 /// Points of a rule on a polygon that the horizon does not cut.

@@ -44,7 +44,7 @@ void ShadingPoints::clear() {
     material.clear();
     path.clear();
     lobe_weight.clear();
-    lobe_width.clear();
+    lobe_parameters.clear();
     of_hit.clear();
     pixel_begin.assign(1, 0);
     members_.clear();
@@ -86,7 +86,7 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) 
     const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
                               glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
                               glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
-    return difference + members.narrowest * relative_difference(hits.widths(hit), members.first_widths) <=
+    return difference + members.narrowest * relative_difference(hits.parameters(hit), members.first_parameters) <=
            members.spread;
 }
 
@@ -98,15 +98,16 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     material.push_back(hits.material[hit]);
     path.push_back(hits.path[hit]);
     lobe_weight.resize(lobe_weight.size() + lobe_stride_, Rgb(0));
-    lobe_width.resize(lobe_width.size() + lobe_stride_, 0);
-    const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.widths(hit));
-    const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
+    lobe_parameters.resize(lobe_parameters.size() + lobe_stride_, 0);
+    const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.parameters(hit));
+    // The mean of azimuths says nothing about that of lobes: a frame turns fast where it is seen along its normal.
+    const double spread = lobes.is_anisotropic() ? 0 : std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
     const Vec3f normal(hits.frame[hit].z);
     first_x_.push_back(normal.x);
     first_y_.push_back(normal.y);
     first_z_.push_back(normal.z);
     nearness_.push_back(static_cast<float>((spread + kNormalRounding) * (spread + kNormalRounding)));
-    members_.push_back({towards_viewer(hits, hit), hits.widths(hit), narrowest, spread, nearest_light, Vec3d(0),
+    members_.push_back({towards_viewer(hits, hit), hits.parameters(hit), narrowest, spread, nearest_light, Vec3d(0),
                         Vec3d(0), Vec3d(0), 0, 0});
 }
 
@@ -117,7 +118,7 @@ void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t po
     members.towards_viewer += towards_viewer(hits, hit);
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
         lobe_weight[point * lobe_stride_ + lobe] += hits.weight(hit, lobe);
-        lobe_width[point * lobe_stride_ + lobe] += hits.widths(hit)[lobe];
+        lobe_parameters[point * lobe_stride_ + lobe] += hits.parameters(hit)[lobe];
     }
     ++members.count;
     of_hit.push_back(static_cast<std::uint32_t>(point));
@@ -132,7 +133,7 @@ void ShadingPoints::finish(std::size_t point) {
         cos_theta_o[point] = view_cosine(frame[point].z, viewer);
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             lobe_weight[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
-            lobe_width[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
+            lobe_parameters[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
         }
     }
 }

@@ -47,9 +47,14 @@ constexpr double kEvenEnough = 0.05;
 /// radius then errs by a share of this one.
 constexpr double kLeastAlbedo = 0.02;
 
-/// Number of points along a radius; the factors of the slope distribution vary slowly. tolerance: ÷ albedo.
-int points_for(double tolerance) {
-    return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
+/// Number of points along a radius; the factors of the slope distribution vary slowly, but a table may hold anything.
+/// tolerance: ÷ albedo.
+int points_for(const LobeShape& shape, double tolerance) {
+    return std::holds_alternative<TableShape>(shape) ? 24
+           : tolerance > 4e-3                        ? 4
+           : tolerance > 2e-4                        ? 6
+           : tolerance > 1e-5                        ? 12
+                                                     : 24;
 }
 
 /// Half vectors along a circle, up to their length: middle + cosine cos τ + sine sin τ. Any parameter that is a Möbius
@@ -161,7 +166,7 @@ class Path {
 class Boundary {
   public:
     Boundary(const LobeShape& shape, double cos_theta_o, double tolerance, double albedo)
-        : slope_ndf_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / std::max(albedo, kLeastAlbedo)))},
+        : slope_ndf_{shape, cos_theta_o, &gauss_rule(points_for(shape, tolerance / std::max(albedo, kLeastAlbedo)))},
           tolerance_(tolerance),
           f32_(tolerance >= kLeastTolerance32 * albedo) {}
 

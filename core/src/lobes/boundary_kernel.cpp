@@ -28,7 +28,7 @@ class SlopeNdfLanes {
           cos_o_(slope_ndf.cos_o),
           sin_o_(std::sqrt((1 - cos_o_) * (1 + cos_o_))),
           lobe_(lobe),
-          view_(lobe.view(D(), all(D(), cos_o_), all(D(), width_))),
+          view_(lobe.view(D(), all(D(), cos_o_), all(D(), lobe_parameter(slope_ndf.shape)))),
           rule_(*slope_ndf.rule) {}
 
     /// Derivative of the azimuth in the plane of slopes times ∫ f·cos over the radius up to the boundary.
@@ -56,7 +56,7 @@ class SlopeNdfLanes {
         const auto across = hn::Sqrt(square);
         const auto inverse = hn::Div(all(d, 1), across);
         const auto turn = hn::Mul(hn::MulSub(x, step(1), hn::Mul(y, step(0))), hn::Mul(inverse, inverse));
-        const auto value = hn::Mul(turn, radial_integral(hn::Mul(x, inverse), hn::Div(across, z)));
+        const auto value = hn::Mul(turn, radial_integral(hn::Mul(x, inverse), hn::Mul(y, inverse), hn::Div(across, z)));
         const auto valid = hn::And(hn::Gt(square, hn::Zero(d)), hn::Gt(z, hn::Zero(d)));
         return hn::IfThenElseZero(valid, value);
     }
@@ -64,7 +64,7 @@ class SlopeNdfLanes {
   private:
     /// ∫ over tan θ' = 0 … radius at one azimuth. In t = tan ½θ' the slope distribution is rational and the range
     /// short.
-    HWY_INLINE V<D> radial_integral(V<D> cos_azimuth, V<D> radius) const {
+    HWY_INLINE V<D> radial_integral(V<D> cos_azimuth, V<D> sin_azimuth, V<D> radius) const {
         const D d;
         const auto one = all(d, 1);
         const auto end = hn::Div(radius, hn::Add(one, hn::Sqrt(hn::MulAdd(radius, radius, one))));
@@ -79,14 +79,15 @@ class SlopeNdfLanes {
             const auto scale = hn::Div(one, hn::MulAdd(t, t, one));
             const auto sine = hn::Mul(hn::Add(t, t), scale);
             const auto cosine = hn::Mul(hn::Mul(hn::Sub(one, t), hn::Add(one, t)), scale);
-            sum = hn::MulAdd(hn::Mul(hn::Mul(weight, scale), sine), factors(cos_azimuth, sine, cosine), sum);
+            sum =
+                hn::MulAdd(hn::Mul(hn::Mul(weight, scale), sine), factors(cos_azimuth, sin_azimuth, sine, cosine), sum);
         }
         return hn::Mul(hn::Mul(all(d, 2 / std::numbers::pi), end), sum);
     }
 
     /// f·cos dω ÷ (cosθ' dω' / π), the slope distribution's solid angle: 4 f·cos / D times ω_o·h with the length of h
     /// divided out.
-    HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sine, V<D> cosine) const {
+    HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sin_azimuth, V<D> sine, V<D> cosine) const {
         const D d;
         const auto cos_o = all(d, cos_o_);
         const auto x = hn::Mul(all(d, width_), sine);
@@ -94,8 +95,11 @@ class SlopeNdfLanes {
         // (ω_o·h) √square
         const auto towards = hn::MulAdd(cos_o, cosine, hn::Mul(hn::Mul(all(d, sin_o_), x), cos_azimuth));
         const auto cos_i = hn::Sub(hn::Div(hn::Mul(hn::Add(towards, towards), cosine), square), cos_o);
-        const auto cos_half = hn::Div(towards, hn::Sqrt(square));
-        const auto value = hn::Mul(lobe_.over_ndf(d, cos_i, cos_half, view_), towards);
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+        const auto across = hn::Mul(x, inverse);
+        const HalfVector<D> half = {hn::Mul(across, cos_azimuth), hn::Mul(across, sin_azimuth),
+                                    hn::Mul(cosine, inverse), hn::Mul(towards, inverse)};
+        const auto value = hn::Mul(lobe_.over_ndf(d, half, cos_i, view_), towards);
         return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
     }
 

@@ -9,6 +9,7 @@
 
 #include "base/checks.h"
 #include "lobes/view_grid.h"
+#include "shlight/lobe_table.h"
 
 namespace shlight {
 namespace {
@@ -56,10 +57,11 @@ float ViewWeight::operator()(float cos_theta_o) const {
     return interpolate_even(nodes_, cos_theta_o);
 }
 
-Bsdf Bsdf::lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight) {
+Bsdf Bsdf::lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight, int order) {
     check_color("color", color);
     Bsdf b;
-    b.lobes_.push_back({shape, is_mirror(shape) ? nullptr : boosted_fit(shape), color, std::move(weight)});
+    b.lobes_.push_back({shape, is_mirror(shape) || shlight::is_anisotropic(shape) ? nullptr : boosted_fit(shape, order),
+                        color, std::move(weight), 0, order});
     return b;
 }
 
@@ -86,6 +88,19 @@ Bsdf Bsdf::ggx(float roughness, const Rgb& f0, double ior) {
         b = b + lobe(edge_shape(alpha, ior), rest);
     }
     return b;
+}
+
+Bsdf Bsdf::table(const std::shared_ptr<const LobeTable>& table, int order) {
+    if (table->channels() == 1) {
+        return lobe(TableShape{table}, Rgb(1), nullptr, order);
+    }
+    Bsdf sum;
+    for (int channel = 0; channel < 3; ++channel) {
+        Rgb color(0);
+        color[channel] = 1;
+        sum = sum + lobe(TableShape{table, channel}, color, nullptr, order);
+    }
+    return sum;
 }
 
 Bsdf Bsdf::layer(const Bsdf& top, const Bsdf& base) {
@@ -121,6 +136,11 @@ Bsdf Bsdf::scaled(const Rgb& factor) const {
         check_color("factor times the material's own colour", lobe.color);
     }
     return result;
+}
+
+bool Bsdf::is_anisotropic() const {
+    return std::any_of(lobes_.begin(), lobes_.end(),
+                       [](const Lobe& lobe) { return shlight::is_anisotropic(lobe.shape); });
 }
 
 Rgb Bsdf::evaluate(const Vec3d& wi, const Vec3d& wo) const {

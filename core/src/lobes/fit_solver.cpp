@@ -121,15 +121,12 @@ double missing_light(const BoostedDensity& d, const HeightBasis& basis, std::spa
     return sum;
 }
 
-/// Eq. 39 of docs/theory.md. A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and the fit's error lies in
-/// bands ≥ order, except for what the ridge λ takes from the low bands. That part is the missing light, which a large
-/// light receives undiminished.
+}  // namespace
+
 double shading_error(double squared_error, double missing_light, int order, double albedo) {
     return albedo > 0 ? (std::sqrt(2 * squared_error / (order * order * order)) + std::abs(missing_light)) / albedo
                       : 0.0;
 }
-
-}  // namespace
 
 void fit_row(const LobeShape& shape, int view, FitTable& table) {
     const double cosine = boosted_view_cosine(view);

@@ -62,6 +62,11 @@ class FitTable {
     AlignedFloats values_;
 };
 
+/// Eq. 39 of docs/theory.md. A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and the fit's error lies in
+/// bands ≥ order, except for what the ridge λ takes from the low bands. That part is the missing light, which a large
+/// light receives undiminished.
+double shading_error(double squared_error, double missing_light, int order, double albedo);
+
 /// Fits one lobe at one view, into a row.
 void fit_row(const LobeShape& shape, int view, FitTable& table);
 /// Fits all views of one shape.

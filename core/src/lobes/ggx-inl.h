@@ -82,10 +82,10 @@ class GgxLanes {
 
     /// F G₂ / cosθ_o.
     template <class D>
-    HWY_INLINE V<D> over_ndf(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
+    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
         const auto visibility = hn::Div(hn::Add(cos_i, cos_i), hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i),
                                                                           hn::Mul(cos_i, view.masking)));
-        return with_fresnel(d, visibility, [&] HWY_ATTR { return cos_half; });
+        return with_fresnel(d, visibility, [&] HWY_ATTR { return half.cosine; });
     }
 
   private:

@@ -35,7 +35,7 @@ class LambertLanes {
         return value(sum, cos_i, view);
     }
     template <class D>
-    HWY_INLINE V<D> over_ndf(D d, V<D> cos_i, V<D> /*cos_half*/, const View<D>& /*view*/) const {
+    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& /*half*/, V<D> cos_i, const View<D>& /*view*/) const {
         return hn::Mul(cos_i, all(d, 4));
     }
 };

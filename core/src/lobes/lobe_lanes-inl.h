@@ -4,11 +4,11 @@
 // instruction set.
 //
 // The lanes class of a shape has
-//   view(d, cos_o, alpha)                 what f·cos needs of each lane's ω_o and lobe_width()
+//   view(d, cos_o, parameter)             what f·cos needs of each lane's ω_o and lobe_parameter()
 //   value(sum, cos_i, view)               f·cos towards ω_i = sum - ω_o, both above the horizon
 //   density(sum, cos_i, view)             density per solid angle of rays drawn from the lobe, towards ω_i
-//   over_ndf(d, cos_i, cos_half, view)    4 f·cos / D(h), the slowly varying factor of boundary_integral.h
-// with cos_half = ω_i·h, and D the GGX distribution of normals for the lobe's width, which is 1/π for diffuse lobes.
+//   over_ndf(d, half, cos_i, view)        4 f·cos / D(h), the slowly varying factor of boundary_integral.h
+// with D the GGX distribution of normals for the lobe's width, which is 1/π for diffuse lobes.
 #if defined(SHLIGHT_KERNELS_LOBE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_LOBE_LANES_INL_H_
 #undef SHLIGHT_KERNELS_LOBE_LANES_INL_H_
@@ -23,6 +23,7 @@
 #include "lobes/ggx-inl.h"
 #include "lobes/lambert-inl.h"
 #include "lobes/rough_diffuse-inl.h"
+#include "lobes/table-inl.h"
 #include "shlight/lobe_shape.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -20,10 +20,6 @@ constexpr int kPanelPoints = 16;
 /// Longest Gauss panel [rad]: it holds fewer than three waves of band 63, which sixteen points integrate to 1e-10.
 constexpr double kLongestPanel = std::numbers::pi / 12;
 
-struct Rule {
-    std::vector<double> nodes, weights;
-};
-
 /// A point near which a function varies over the length `scale`; far from it the length is one.
 struct Feature {
     double position, scale;
@@ -31,9 +27,9 @@ struct Feature {
 
 /// Gauss panels over (from, to). The length of each is at most kLongestPanel, and at most half its distance from a
 /// feature plus the feature's scale.
-Rule graded_rule(double from, double to, const std::vector<Feature>& features) {
-    Rule rule;
-    const GaussRule& gauss = gauss_rule(kPanelPoints);
+QuadratureRule graded_rule(double from, double to, const std::vector<Feature>& features, int panel_points) {
+    QuadratureRule rule;
+    const GaussRule& gauss = gauss_rule(panel_points);
     double start = from;
     while (start < to) {
         // The bound holds on the whole panel if it is evaluated at the end nearer to the feature.
@@ -63,7 +59,7 @@ struct Azimuths {
     std::vector<double> weights;
     std::vector<double> cosines, sines;  ///< cos mφ and sin mφ for m = 0 … 63, node by node
 
-    explicit Azimuths(Rule rule)
+    explicit Azimuths(QuadratureRule rule)
         : weights(std::move(rule.weights)), cosines(weights.size() * kMaxOrder), sines(cosines.size()) {
         for (std::size_t j = 0; j < weights.size(); ++j) {
             complex_powers(-std::cos(rule.nodes[j]), std::sin(rule.nodes[j]), kMaxOrder, &cosines[j * kMaxOrder],
@@ -92,14 +88,22 @@ double azimuth_moments(const LobeShape& shape, double sine, double cosine, const
 
 }  // namespace
 
-LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
-    const double alpha = lobe_width(shape);
+LobeRule lobe_rule(double width, double theta_o, int panel_points) {
     const double half_pi = std::numbers::pi / 2;
-    const Vec3d wo(std::sin(theta_o), 0.0, std::cos(theta_o));
     // The lobe is α wide in the plane of incidence and α cosθ_o across; masking varies over α near the horizon.
-    const Rule theta = graded_rule(0, half_pi, {{theta_o, alpha}, {half_pi, alpha}});
-    const double across = alpha * std::max(wo.z, 0.05);
-    const Azimuths phi(graded_rule(0, std::numbers::pi, {{0.0, across / std::max(wo.x, across)}}));
+    const double across = width * std::max(std::cos(theta_o), 0.05);
+    return {graded_rule(0, half_pi, {{theta_o, width}, {half_pi, width}}, panel_points),
+            graded_rule(0, std::numbers::pi, {{0.0, across / std::max(std::sin(theta_o), across)}}, panel_points)};
+}
+
+double least_grazing(double theta_o) {
+    return std::min(theta_o, std::numbers::pi / 2 - 1e-6);  // the same in float
+}
+
+LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
+    const Vec3d wo(std::sin(theta_o), 0.0, std::cos(theta_o));
+    const auto [theta, around] = lobe_rule(lobe_width(shape), theta_o, kPanelPoints);
+    const Azimuths phi(around);
 
     LobeMoments result{std::vector<double>(kCosineMax, 0.0), 0.0};
     std::vector<double> fourier(kMaxOrder);
@@ -130,10 +134,8 @@ std::vector<LobeMoments> moments_of_all_views(const LobeShape& shape) {
     std::vector<LobeMoments> views(kViewNodes);
     // Isolated, because a thread that waits here must not start unrelated work that asks for this same lobe.
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(0, kViewNodes, [&](int node) {
-            // At θ_o = π/2 a lobe is only defined as a limit; a view a microradian above is the same in float.
-            views[node] = lobe_moments(shape, std::min(view_angle(node), std::numbers::pi / 2 - 1e-6));
-        });
+        tbb::parallel_for(0, kViewNodes,
+                          [&](int node) { views[node] = lobe_moments(shape, least_grazing(view_angle(node))); });
     });
     return views;
 }

@@ -93,16 +93,23 @@ void sample_all(const Shape& shape, const Vec3d& view, const float* u, const flo
 
 void sample_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
                  const RayVectors& directions) {
-    std::visit([&](const auto& s) { sample_all(s.sampled(), view, u, v, count, directions); }, shape);
+    std::visit(
+        [&](const auto& s) {
+            // No other shapes are sampled ones.
+            if constexpr (requires { sample(s, view, V<Floats>(), V<Floats>()); }) {
+                sample_all(s, view, u, v, count, directions);
+            }
+        },
+        sampled_shape(shape));
 }
 
 template <class Lobe>
-void weigh_all(const Lobe& lobe, double width, const ShadingFrame& frame, const Vec3d& view,
+void weigh_all(const Lobe& lobe, double parameter, const ShadingFrame& frame, const Vec3d& view,
                const ConstRayVectors& ways, std::size_t count, float* values, float* densities) {
     const Floats d;
     const auto zero = hn::Zero(d);
     const auto cos_o = all(d, view.z);
-    const auto of_view = lobe.view(d, cos_o, all(d, std::max(width, kLeastAlpha)));
+    const auto of_view = lobe.view(d, cos_o, all(d, std::max(parameter, kLeastAlpha)));
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
         const Vectors way = normalized(load(ways, i));
         const auto cos_i = dot(way, frame.z);
@@ -118,7 +125,7 @@ void weigh_all(const Lobe& lobe, double width, const ShadingFrame& frame, const 
 void weigh_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const ConstRayVectors& ways,
                 std::size_t count, float* values, float* densities) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
-        weigh_all(lobe, lobe_width(shape), frame, view, ways, count, values, densities);
+        weigh_all(lobe, lobe_parameter(shape), frame, view, ways, count, values, densities);
     });
 }
 

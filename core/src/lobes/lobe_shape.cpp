@@ -1,10 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/lobe_shape.h"
 
+#include "shlight/lobe_table.h"
+
 namespace shlight {
 
 double lobe_width(const LobeShape& shape) {
     return std::visit([](const auto& s) { return s.width(); }, shape);
+}
+
+bool is_anisotropic(const LobeShape& shape) {
+    const auto* own = std::get_if<TableShape>(&shape);
+    return own != nullptr && !own->table->is_isotropic();
+}
+
+double lobe_parameter(const LobeShape& shape) {
+    return is_anisotropic(shape) ? std::get<TableShape>(shape).azimuth : lobe_width(shape);
+}
+
+LobeShape with_parameter(const LobeShape& shape, double parameter) {
+    if (!is_anisotropic(shape)) {
+        return with_width(shape, parameter);
+    }
+    LobeShape result = shape;
+    std::get<TableShape>(result).azimuth = parameter;
+    return result;
 }
 
 LobeShape with_width(const LobeShape& shape, double width) {
@@ -16,7 +36,7 @@ LobeShape with_width(const LobeShape& shape, double width) {
 }
 
 bool is_glossy(const LobeShape& shape) {
-    return std::visit([](const auto& s) { return s.kGlossy; }, shape);
+    return std::visit([](const auto& s) { return s.is_glossy(); }, shape);
 }
 
 bool is_mirror(const LobeShape& shape) {

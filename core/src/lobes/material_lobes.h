@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lobes/anisotropic_fit.h"
 #include "lobes/fit_table.h"
 #include "shlight/bsdf.h"
 #include "shlight/types.h"
@@ -30,8 +31,8 @@ struct LobeWeights {
     std::size_t stride;  ///< 0: the views share their weights
 };
 
-/// Widths of lobes whose width varies over a surface, laid out as LobeWeights.
-struct LobeWidths {
+/// lobe_parameter() of lobes that vary over a surface, laid out as LobeWeights.
+struct LobeParameters {
     std::span<const float> values;  ///< empty: none varies
     std::size_t stride;
 };
@@ -44,30 +45,37 @@ class MaterialLobes {
 
     /// The material's lobes, without black ones.
     std::span<const Lobe> lobes() const { return lobes_; }
-    /// The fit that shades a lobe; null for a mirror, and for a lobe whose width varies.
+    /// The fit that shades a lobe; null for a mirror, and for a lobe that varies.
     const BoostedFit* fit(std::size_t lobe) const { return auto_order_ ? lobes_[lobe].fit.get() : fits_[lobe].get(); }
     /// The fits that shade a lobe whose width varies; null for others.
     const FitGrid* grid(std::size_t lobe) const { return grids_[lobe].get(); }
-    /// Whether any lobe's width varies.
+    /// The fits that shade an anisotropic lobe; null for others.
+    const AnisotropicFit* anisotropic(std::size_t lobe) const { return anisotropic_[lobe].get(); }
+    /// Whether any lobe varies over a surface, or depends on the azimuth of the view.
     bool varies() const {
-        return std::any_of(lobes_.begin(), lobes_.end(), [](const Lobe& lobe) { return lobe.varying_width != 0; });
+        return std::any_of(lobes_.begin(), lobes_.end(), [](const Lobe& lobe) { return lobe.varies(); });
+    }
+    bool is_anisotropic() const {
+        return std::any_of(anisotropic_.begin(), anisotropic_.end(), [](const auto& fit) { return fit != nullptr; });
     }
     /// Whether orders are chosen per view and light; otherwise a fit has only one order.
     bool auto_order() const { return auto_order_; }
     double tolerance() const { return tolerance_; }
     /// The lobes' weights at these views, stored in `values`, which must outlive the result.
     LobeWeights weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const;
-    /// Width of the narrowest lobe [rad], see narrowest() above. widths: of each lobe, read where it varies.
-    double narrowest(double cos_theta_o, std::span<const float> widths) const;
-    /// A lobe's shape; `width` replaces its width if that varies.
-    LobeShape shape(std::size_t lobe, float width) const {
-        return lobes_[lobe].varying_width != 0 ? with_width(lobes_[lobe].shape, double{width}) : lobes_[lobe].shape;
+    /// Width of the narrowest lobe [rad], see narrowest() above. parameters: of each lobe, read where it varies.
+    double narrowest(double cos_theta_o, std::span<const float> parameters) const;
+    /// A lobe's shape; `parameter` replaces its own if that varies.
+    LobeShape shape(std::size_t lobe, float parameter) const {
+        const Lobe& own = lobes_[lobe];
+        return own.varies() ? with_parameter(own.shape, double{parameter}) : own.shape;
     }
 
   private:
     std::vector<Lobe> lobes_;
     std::vector<std::shared_ptr<const BoostedFit>> fits_;  // of the only order; otherwise empty
     std::vector<std::shared_ptr<const FitGrid>> grids_;
+    std::vector<std::shared_ptr<const AnisotropicFit>> anisotropic_;
     bool auto_order_;
     double tolerance_;
 };

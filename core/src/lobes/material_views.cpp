@@ -42,7 +42,7 @@ ViewOutput ViewPositions::arrays() {
 }
 
 void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions,
-                        const LobeWeights& weights, const LobeWidths& widths, bool judged) {
+                        const LobeWeights& weights, const LobeParameters& parameters, bool judged) {
     lobe_ = &material.lobes()[lobe];
     weights_ = weights;
     index_ = lobe;
@@ -51,12 +51,13 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     weighed_.clear();
     std::copy_if(positions.all().begin(), positions.all().end(), std::back_inserter(weighed_),
                  [&](std::uint32_t view) { return weight(view) != Rgb(0); });
-    find_widths(widths, material.grid(lobe));
+    anisotropic_ = material.anisotropic(lobe);
+    find_parameters(parameters, material.grid(lobe));
     layout_ = fit_ != nullptr ? fit_->table() : nullptr;
     if (!neighbours_.empty() && !is_black()) {
         layout_ = neighbours_[FitGrid::kNeighbours * weighed_.front()];
     }
-    chooses_ = material.auto_order() && layout_ != nullptr;
+    chooses_ = material.auto_order() && !orders().empty();
     judged_ = judged;
     relative_tolerance_ = 0;
     has_boosts_ = false;
@@ -66,18 +67,31 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     }
 }
 
-void LobeViews::find_widths(const LobeWidths& widths, const FitGrid* grid) {
+std::span<const int> LobeViews::orders() const {
+    return layout_ != nullptr        ? layout_->orders()
+           : anisotropic_ != nullptr ? anisotropic_->orders()
+                                     : std::span<const int>();
+}
+
+void LobeViews::find_parameters(const LobeParameters& parameters, const FitGrid* grid) {
     const std::size_t count = positions_->size();
     widths_.assign(padded_views(count), static_cast<float>(lobe_width(shape())));
     neighbours_.clear();
     neighbour_weights_.clear();
+    const auto own = [&](std::uint32_t view) { return parameters.values[view * parameters.stride + index_]; };
+    if (anisotropic_ != nullptr) {
+        azimuths_.assign(padded_views(count), 0);
+        for (const std::uint32_t view : weighed_) {
+            azimuths_[view] = own(view);
+        }
+    }
     if (grid == nullptr) {
         return;
     }
     neighbours_.resize(FitGrid::kNeighbours * count);
     neighbour_weights_.resize(FitGrid::kNeighbours * count);
     for (const std::uint32_t view : weighed_) {
-        widths_[view] = widths.values[view * widths.stride + index_];
+        widths_[view] = own(view);
         const FitGrid::Neighbours found = grid->neighbours(double{widths_[view]});
         const auto first = static_cast<std::ptrdiff_t>(FitGrid::kNeighbours * view);
         std::copy(found.tables.begin(), found.tables.end(), neighbours_.begin() + first);
@@ -102,14 +116,20 @@ void LobeViews::interpolate(std::size_t column, std::size_t width, std::span<con
 void LobeViews::find_albedos() {
     const std::size_t count = positions_->size();
     albedo_.assign(count, 0);
-    if (layout_ == nullptr) {
+    if (orders().empty()) {
         for (const std::uint32_t view : weighed_) {
             albedo_[view] = static_cast<float>(lobe_->albedo(positions_->cosine()[view]));
         }
         return;
     }
     heads_.grow(count * FitTable::kHeadWidth);
-    interpolate(0, FitTable::kHeadWidth, weighed_, heads_.data(), FitTable::kHeadWidth);
+    if (layout_ != nullptr) {
+        interpolate(0, FitTable::kHeadWidth, weighed_, heads_.data(), FitTable::kHeadWidth);
+    }
+    for (const std::uint32_t view : anisotropic_ != nullptr ? std::span(weighed_) : std::span<std::uint32_t>()) {
+        anisotropic_->head(positions_->cosine()[view], double{azimuths_[view]},
+                           heads_.data() + view * FitTable::kHeadWidth);
+    }
     for (const std::uint32_t view : weighed_) {
         albedo_[view] = heads_.data()[view * FitTable::kHeadWidth + FitTable::kAlbedo];
     }
@@ -118,10 +138,8 @@ void LobeViews::find_albedos() {
 /// tolerance_scales: albedo of the material ÷ albedo of this lobe at each view; infinite where the lobe is black.
 void LobeViews::choose_orders(double tolerance, std::span<const float> tolerance_scales) {
     const std::size_t count = positions_->size();
-    const FitTable* table = layout_;
-    const int only = table != nullptr  ? (chooses_ ? -1 : table->orders().front())
-                     : fit_ != nullptr ? fit_->orders().front()
-                                       : 0;
+    const std::span<const int> orders = this->orders();
+    const int only = !orders.empty() ? (chooses_ ? -1 : orders.front()) : fit_ != nullptr ? fit_->orders().front() : 0;
     black_.assign(count, 0);
     within_tolerance_.assign(count, 1);
     order_.assign(count, static_cast<std::uint8_t>(std::max(only, 0)));
@@ -141,7 +159,7 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> tolerance
         if (black_[view] != 0) {
             continue;
         }
-        if (table == nullptr) {
+        if (orders.empty()) {
             within_tolerance_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
             continue;
         }
@@ -150,10 +168,10 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> tolerance
             within_tolerance_[view] = errors[0] <= tolerance_[view] ? 1 : 0;
         } else if (positions_->cosine()[view] >= kLeastFittedCosine) {
             std::size_t i = 0;
-            while (i < table->orders().size() && !(errors[i] <= tolerance_[view])) {
+            while (i < orders.size() && !(errors[i] <= tolerance_[view])) {
                 ++i;
             }
-            order_[view] = static_cast<std::uint8_t>(i < table->orders().size() ? table->orders()[i] : 0);
+            order_[view] = static_cast<std::uint8_t>(i < orders.size() ? orders[i] : 0);
         }
     }
 }
@@ -163,7 +181,7 @@ double LobeViews::error_of_largest_order(std::size_t view) const {
         return std::numeric_limits<double>::infinity();
     }
     const float* head = heads_.data() + view * FitTable::kHeadWidth;
-    return double{head[FitTable::kShadingErrors + layout_->orders().size() - 1]} * albedo_[view];
+    return double{head[FitTable::kShadingErrors + orders().size() - 1]} * albedo_[view];
 }
 
 BoostArrays LobeViews::boost_arrays() {
@@ -182,24 +200,41 @@ BoostArrays LobeViews::boost_arrays() {
             w + 4 * room,      w + 5 * room,        w + 6 * room};
 }
 
-void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
-    const FitTable& table = *layout_;
+void LobeViews::make_room_for_terms(std::size_t stride) {
     if (stride_ == 0) {
-        // The stride fits every order.
-        for (std::size_t i = 0; i < table.orders().size(); ++i) {
-            stride_ = std::max(stride_, table.width(i));
-        }
+        stride_ = stride;
         terms_.grow(positions_->size() * stride_);
         has_terms_.assign(positions_->size(), 0);
     }
-    missing_.clear();
-    for (const std::uint32_t view : used) {
-        if (has_terms_[view] != which + 1) {
-            has_terms_[view] = static_cast<std::uint8_t>(which + 1);
-            missing_.push_back(view);
-        }
+}
+
+bool LobeViews::lacks_terms(std::uint32_t view, std::size_t which) {
+    const bool lacks = has_terms_[view] != which + 1;
+    has_terms_[view] = static_cast<std::uint8_t>(which + 1);
+    return lacks;
+}
+
+void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
+    const FitTable& table = *layout_;
+    std::size_t widest = 0;
+    for (std::size_t i = 0; i < table.orders().size(); ++i) {
+        widest = std::max(widest, table.width(i));
     }
+    make_room_for_terms(widest);
+    missing_.clear();
+    std::copy_if(used.begin(), used.end(), std::back_inserter(missing_),
+                 [&](std::uint32_t view) { return lacks_terms(view, which); });
     interpolate(table.terms(which), table.width(which), missing_, terms_.data(), stride_);
+}
+
+const float* LobeViews::coefficients(int order, std::uint32_t view) {
+    make_room_for_terms(AlignedFloats::padded(static_cast<std::size_t>(coefficient_count(largest_order()))));
+    float* own = terms_.data() + view * stride_;
+    const auto which = static_cast<std::size_t>(std::ranges::find(orders(), order) - orders().begin());
+    if (lacks_terms(view, which)) {
+        anisotropic_->coefficients(positions_->cosine()[view], double{azimuths_[view]}, order, own);
+    }
+    return own;
 }
 
 LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
@@ -218,7 +253,7 @@ LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
 }
 
 void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o,
-                           const LobeWeights& weights, const LobeWidths& widths, bool judged) {
+                           const LobeWeights& weights, const LobeParameters& parameters, bool judged) {
     const bool weighed = judged || material.auto_order();
     lobe_count_ = material.lobes().size();
     tolerance_ = material.tolerance();
@@ -232,7 +267,7 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
         lobes_.resize(lobe_count_);
     }
     for (std::size_t i = 0; i < lobe_count_; ++i) {
-        lobes_[i].look_up(material, i, positions_, weights, widths, weighed);
+        lobes_[i].look_up(material, i, positions_, weights, parameters, weighed);
     }
     if (weighed && lobe_count_ > 1) {
         whole_.assign(positions_.size(), Rgb(0));

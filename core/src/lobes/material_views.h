@@ -49,13 +49,16 @@ class ViewPositions {
 /// One lobe at all views of a ViewPositions. Memory is reused from one assignment to the next.
 class LobeViews {
   public:
-    /// The shape, whose width is meaningless if it varies.
+    /// The shape, whose parameter is meaningless if it varies.
     const LobeShape& shape() const { return lobe_->shape; }
     LobeShape shape(std::size_t view) const {
-        return lobe_->varying_width != 0 ? with_width(lobe_->shape, double{widths_[view]}) : lobe_->shape;
+        return lobe_->varies() ? with_parameter(lobe_->shape, double{parameters()[view]}) : lobe_->shape;
     }
     /// lobe_width() at each view.
     const float* widths() const { return widths_.data(); }
+    /// lobe_parameter() at each view.
+    const float* parameters() const { return anisotropic_ != nullptr ? azimuths_.data() : widths_.data(); }
+    bool is_anisotropic() const { return anisotropic_ != nullptr; }
     const ViewPositions& positions() const { return *positions_; }
 
     /// Whether the cheapest method is chosen for each light; otherwise all lights take harmonics of one order.
@@ -80,28 +83,36 @@ class LobeViews {
 
     /// Permitted error as a share of the light's radiance, where it exceeds absolute_tolerance(); 0: none.
     double relative_tolerance() const { return relative_tolerance_; }
-    int largest_order() const { return layout_->orders().back(); }
+    int largest_order() const { return orders().back(); }
     /// Error of the radiance at largest_order(); only if chooses().
     double error_of_largest_order(std::size_t view) const;
 
     /// The kernels' arrays of the views in `used`, all of which have this order.
     LobeArrays arrays(int order, std::span<const std::uint32_t> used);
+    /// order² coefficients of an anisotropic lobe in the frame of a view, until the next call with another order.
+    const float* coefficients(int order, std::uint32_t view);
 
   private:
     friend class MaterialViews;
 
     void look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, const LobeWeights& weights,
-                 const LobeWidths& widths, bool judged);
-    void find_widths(const LobeWidths& widths, const FitGrid* grid);
+                 const LobeParameters& parameters, bool judged);
+    void find_parameters(const LobeParameters& parameters, const FitGrid* grid);
     void interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
                      std::size_t stride);
+    /// The orders of the fits; empty for a mirror and for Lambert.
+    std::span<const int> orders() const;
+    void make_room_for_terms(std::size_t stride);
+    /// Whether the view's terms are of another order than orders()[which], or none; after that they are taken for it.
+    bool lacks_terms(std::uint32_t view, std::size_t which);
     void find_albedos();
     void choose_orders(double tolerance, std::span<const float> tolerance_scales);
     BoostArrays boost_arrays();
     void interpolate_terms(std::size_t which, std::span<const std::uint32_t> used);
 
     const Lobe* lobe_ = nullptr;
-    const BoostedFit* fit_ = nullptr;   // null for a mirror, and where the width varies
+    const BoostedFit* fit_ = nullptr;  // null for a mirror, and where the width varies
+    const AnisotropicFit* anisotropic_ = nullptr;
     const FitTable* layout_ = nullptr;  // table of the fit or of the grid; null for mirrors and Lambert
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
@@ -112,7 +123,7 @@ class LobeViews {
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
     std::vector<std::uint32_t> weighed_;  // views with a weight above 0; other arrays are valid for these only
     AlignedFloats heads_;
-    std::vector<float> widths_;                // padded
+    std::vector<float> widths_, azimuths_;     // padded
     std::vector<const FitTable*> neighbours_;  // tables of the grid for each view; empty: one width for all
     std::vector<float> neighbour_weights_;
     std::vector<const float*> columns_;  // their numbers from a column on
@@ -129,7 +140,7 @@ class MaterialViews {
   public:
     /// judged: whether within_tolerance() will be called. material and weights are kept by reference.
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
-                const LobeWidths& widths, bool judged);
+                const LobeParameters& parameters, bool judged);
 
     /// Chooses orders anew, so that each lobe's radiance under a light of this strength has an error of at most
     /// `error`, or of the material's tolerance times that radiance. Precondition: auto_order() of the material.

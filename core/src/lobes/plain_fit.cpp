@@ -14,6 +14,7 @@
 #include "lobes/view_grid.h"
 #include "math/gauss_legendre.h"
 #include "math/legendre.h"
+#include "shlight/lobe_table.h"
 
 namespace shlight {
 namespace {
@@ -30,6 +31,9 @@ const NormalEquations& hemisphere() {
 }  // namespace
 
 PlainFit::PlainFit(const LobeShape& shape) {
+    if (const auto* table = std::get_if<TableShape>(&shape)) {
+        table_ = *table;
+    }
     if (std::holds_alternative<LambertShape>(shape)) {
         return;
     }
@@ -54,7 +58,8 @@ double PlainFit::residual(double cos_theta_o, int order) const {
         return lambert_error(order);
     }
     const ViewInterval view(cos_theta_o);
-    return (1 - view.t) * residual_at(view.low, order) + view.t * residual_at(view.low + 1, order);
+    const double lacking = table_.table ? table_.table->sampling_error(cos_theta_o, table_.channel) : 0.0;
+    return (1 - view.t) * residual_at(view.low, order) + view.t * residual_at(view.low + 1, order) + lacking;
 }
 
 double PlainFit::residual_at(std::size_t node, int order) const {

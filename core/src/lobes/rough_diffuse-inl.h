@@ -45,8 +45,8 @@ class DiffuseLanes {
         return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
     }
     template <class D>
-    HWY_INLINE V<D> over_ndf(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
-        return times_pi(d, cos_i, hn::MulAdd(hn::Add(cos_half, cos_half), cos_half, all(d, -1)), view, 4);
+    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
+        return times_pi(d, cos_i, hn::MulAdd(hn::Add(half.cosine, half.cosine), half.cosine, all(d, -1)), view, 4);
     }
 
   private:

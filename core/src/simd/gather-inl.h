@@ -109,6 +109,12 @@ struct HalfSum {
     V<Floats> x, y, z;
 };
 
+/// The half vector, unit, and its cosine with ω_i and ω_o.
+template <class D>
+struct HalfVector {
+    V<D> x, y, z, cosine;
+};
+
 }  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -302,6 +302,11 @@ Rgb CameraSurfaces::refracted(const Surface& surface) const {
     return sum;
 }
 
+double CameraSurfaces::azimuth_of_view(const Surface& surface) const {
+    return scene_->placed().azimuth(
+        surface.hit, shading_frame(surface.point.position, surface.point.shading_normal, surface.towards_viewer));
+}
+
 void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const {
     lobes.clear();
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
@@ -318,7 +323,10 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     const Vec3d& normal = surface.point.shading_normal;
     const float cosine = view_cosine(normal, surface.towards_viewer);
     for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
-        lobes.push_back({lobe.shape, normal, lobe.scale(cosine)});
+        // There is no program, so that no width varies.
+        const LobeShape shape =
+            lobe.varies() ? with_parameter(lobe.shape, azimuth_of_view(surface)) : lobe.shape;
+        lobes.push_back({shape, normal, lobe.scale(cosine)});
     }
 }
 
@@ -333,13 +341,13 @@ void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hit
         const SurfaceLobe& own = lobes_[first];
         const bool bumped = own.is_bumped();
         weights_.assign(lobes_.size(), Rgb(0));
-        widths_.assign(lobes_.size(), 1);
+        parameters_.assign(lobes_.size(), 1);
         for (std::size_t i = first; i < lobes_.size(); ++i) {
             if (lobes_[i].normal == own.normal && lobes_[i].is_bumped() == bumped) {
                 taken_[i] = 1;
                 if (!is_mirror(lobes_[i].shape)) {
                     weights_[i] = surface.throughput * lobes_[i].weight;
-                    widths_[i] = static_cast<float>(lobe_width(lobes_[i].shape));
+                    parameters_[i] = static_cast<float>(lobe_parameter(lobes_[i].shape));
                 }
             }
         }
@@ -347,7 +355,7 @@ void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hit
             const ShadingFrame frame = frame_of(surface, own);
             const SurfacePoint point = own.lit_side(surface.point);
             hits.add(point, scene_->placed().terminator(surface.hit, point), frame,
-                     view_cosine(frame.z, view_of(surface, own)), weights_, widths_, rays_[surface.ray].sample,
+                     view_cosine(frame.z, view_of(surface, own)), weights_, parameters_, rays_[surface.ray].sample,
                      surface.kind, static_cast<std::uint32_t>(sink.in_apart(surface, surface.bounces)));
         }
     }

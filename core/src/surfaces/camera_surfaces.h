@@ -240,6 +240,8 @@ class CameraSurfaces {
                                   : surface.towards_viewer;
     }
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
+    /// See PlacedMeshes::azimuth().
+    double azimuth_of_view(const Surface& surface) const;
     void add_hits(const Sink& sink, Hits& hits);
     void add_hit(const Surface& surface, const Sink& sink, Hits& hits);
     /// A path through an interface, or inside back from it.
@@ -273,7 +275,7 @@ class CameraSurfaces {
     std::vector<std::uint8_t> drawn_hits_;
     std::vector<std::uint8_t> taken_;  // by lobe: whether a hit or a path has it
     std::vector<Rgb> weights_;
-    std::vector<float> widths_;
+    std::vector<float> parameters_;
     std::vector<Rgb> recorded_;  // see StoredLight
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "base/ray_rounding.h"
@@ -213,6 +214,44 @@ Vec3d PlacedMeshes::uv(const RayHit& hit) const {
     }
     const MeshAttribute& own = mesh.attributes[mesh.uv];
     return {attribute(own, 0, hit), attribute(own, 1, hit), 1};
+}
+
+Vec3d PlacedMeshes::growth_of_u(const RayHit& hit) const {
+    if (mesh_of(placements_[hit.instance]).shape->uv == MeshShader::kNoAttribute) {
+        return Vec3d(0);
+    }
+    const auto uv_at = [&](float u, float v) {
+        RayHit corner = hit;
+        corner.u = u;
+        corner.v = v;
+        return uv(corner);
+    };
+    const std::array<Vec3d, 3> corners = this->corners(hit);
+    const Vec3d first = uv_at(0, 0);
+    const Vec3d along = uv_at(1, 0) - first;
+    const Vec3d beside = uv_at(0, 1) - first;
+    const double area = along.x * beside.y - beside.x * along.y;
+    const Vec3d growth = beside.y * (corners[1] - corners[0]) - along.y * (corners[2] - corners[0]);
+    return area < 0 ? -growth : area > 0 ? growth : Vec3d(0);
+}
+
+Vec3d PlacedMeshes::around_axis(const RayHit& hit, const Vec3d& position) const {
+    const Placement& placement = placements_[hit.instance];
+    const Vec3d own = transform_point(placement.to_object, position);
+    return transform_vector(placement.to_world, {-own.y, own.x, 0});
+}
+
+double PlacedMeshes::azimuth(const RayHit& hit, const ShadingFrame& frame) const {
+    // If neither of them says it, x is the tangent.
+    for (const Vec3d& tangent : {growth_of_u(hit), around_axis(hit, frame.origin)}) {
+        const double x = glm::dot(tangent, frame.x);
+        const double y = glm::dot(tangent, frame.y);
+        if (std::isfinite(x) && std::isfinite(y) && (x != 0 || y != 0)) {
+            const double turn = std::atan2(y, x);
+            return turn > 0 ? 2 * std::numbers::pi - turn : -turn;
+        }
+    }
+    return 0;
 }
 
 const Label& PlacedMeshes::label(const RayHit& hit) const {

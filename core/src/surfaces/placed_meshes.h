@@ -14,6 +14,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
+#include "base/shading_frame.h"
 #include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/shader_program.h"
@@ -89,6 +90,9 @@ class PlacedMeshes {
     Terminator terminator(const RayHit& hit, const SurfacePoint& point) const;
     /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
     Vec3d uv(const RayHit& hit) const;
+    /// The azimuth of a frame's x, 0 … 2π, from the direction on in which anisotropic materials are laid out: in which
+    /// the texture coordinate u grows, or, on meshes without texture coordinates, around the mesh's own z-axis.
+    double azimuth(const RayHit& hit, const ShadingFrame& frame) const;
     const Label& label(const RayHit& hit) const;
     /// Whether the viewer sees the mesh's back.
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
@@ -111,6 +115,9 @@ class PlacedMeshes {
     std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
     /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
+    /// ∂P/∂u up to its length; 0 where u and v do not say.
+    Vec3d growth_of_u(const RayHit& hit) const;
+    Vec3d around_axis(const RayHit& hit, const Vec3d& position) const;
     /// place: see ShaderReader.
     Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;
     float object_value(const Placement& placement, std::uint32_t index) const;
