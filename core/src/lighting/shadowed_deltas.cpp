@@ -12,13 +12,13 @@ namespace shlight {
 namespace {
 
 /// Values of a pixel that are held at a time, as many as fit the cache.
-constexpr std::size_t kValues = std::size_t{1} << 17;
+constexpr std::size_t kDeltaValues = std::size_t{1} << 17;
 
 constexpr std::uint32_t kAbove = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kBelow = kAbove - 1;
 
 std::size_t range_size(std::size_t values_per_light, std::size_t lights) {
-    const std::size_t size = kValues / std::max<std::size_t>(values_per_light, 1) / kDeltaLanes * kDeltaLanes;
+    const std::size_t size = kDeltaValues / std::max<std::size_t>(values_per_light, 1) / kDeltaLanes * kDeltaLanes;
     return std::clamp(size, kDeltaLanes, lights);
 }
 

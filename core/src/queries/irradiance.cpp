@@ -21,7 +21,7 @@ namespace {
 /// Error of the light without shadows ÷ that light.
 constexpr double kTolerance = 1e-4;
 /// Points that are shaded together, at most.
-constexpr std::size_t kBatchPoints = 256;
+constexpr std::size_t kIrradianceBatch = 256;
 /// Points of a cell of space, about. Some of them ask first what is in the way of each light.
 constexpr std::size_t kCellPoints = 16;
 constexpr std::size_t kAskFirst = 4;
@@ -36,8 +36,8 @@ constexpr std::uint32_t kTimesShare = 2;
 constexpr std::size_t kLightBits = 32;
 
 /// One per thread.
-struct Shader {
-    Shader(const CompiledScene& scene, const LightingScene& lights, std::uint32_t transparent_bounces)
+struct PointShader {
+    PointShader(const CompiledScene& scene, const LightingScene& lights, std::uint32_t transparent_bounces)
         : points(scene), lighting(lights, scene.rays(), transparent_bounces, kWholeLight) {}
 
     QueryPoints points;
@@ -61,7 +61,7 @@ class IrradianceQuery {
           cells_(points, kCellPoints),
           penumbrae_(cells_.size(), LightBits::kAll),
           shaders_([&scene, this] {
-              return Shader(scene, lighting_, static_cast<std::uint32_t>(settings_->transparent_bounces));
+              return PointShader(scene, lighting_, static_cast<std::uint32_t>(settings_->transparent_bounces));
           }) {}
 
     void run(std::span<Vec3d> irradiance, std::span<Vec3d> errors);
@@ -81,14 +81,14 @@ class IrradianceQuery {
     LightingScene lighting_;
     PointCells cells_;
     std::vector<std::uint32_t> penumbrae_;  // of each cell, as in LightBits
-    tbb::enumerable_thread_specific<Shader> shaders_;
+    tbb::enumerable_thread_specific<PointShader> shaders_;
 };
 
 template <class Visit>
 void IrradianceQuery::shade(std::size_t first, std::size_t last, std::size_t step, const SampleRange& samples,
                             std::uint32_t seed, const Visit& visit) {
     end_if(*stopped_);
-    Shader& shader = shaders_.local();
+    PointShader& shader = shaders_.local();
     shader.positions.clear();
     shader.frames.clear();
     shader.seeds.clear();
@@ -110,7 +110,7 @@ void IrradianceQuery::shade(std::size_t first, std::size_t last, std::size_t ste
 
 void IrradianceQuery::ask_first() {
     std::vector<LightBits> of_point(points_.size());
-    const std::size_t size = kAskFirst * kBatchPoints;
+    const std::size_t size = kAskFirst * kIrradianceBatch;
     parallel_for((points_.size() + size - 1) / size, settings_->threads, [&](std::size_t batch) {
         const std::size_t last = std::min((batch + 1) * size, points_.size());
         shade(batch * size, last, kAskFirst, {0, 1, kFirstRays, 0}, kFirstSeed,
@@ -134,7 +134,7 @@ void IrradianceQuery::run(std::span<Vec3d> irradiance, std::span<Vec3d> errors) 
     }
     const std::uint32_t rays = kTimesShare * static_cast<std::uint32_t>(settings_->rays);
     const double evenness = 1 / std::sqrt(std::max(settings_->rays, 1));
-    const std::size_t size = std::min<std::size_t>(kBatchPoints, lighting_.batch_size());
+    const std::size_t size = std::min<std::size_t>(kIrradianceBatch, lighting_.batch_size());
     parallel_for((points_.size() + size - 1) / size, settings_->threads, [&](std::size_t batch) {
         const std::size_t last = std::min((batch + 1) * size, points_.size());
         shade(batch * size, last, 1, {0, 1, rays, 0, !asks}, 0, [&](std::size_t i, const Hits& hits, std::size_t hit) {

@@ -18,7 +18,7 @@ namespace shlight {
 namespace {
 
 /// Rays that are shaded together, at most.
-constexpr std::uint32_t kBatchRays = 512;
+constexpr std::uint32_t kRadianceBatch = 512;
 /// Rays of a pixel whose paths are drawn, at least: fewer do not tell how they differ.
 constexpr std::uint32_t kLeastPaths = 4;
 /// Largest radiance of a ray; squares of brighter ones would overflow in float.
@@ -46,8 +46,8 @@ PathSettings paths_of(const RenderSettings& settings) {
 }
 
 /// One per thread.
-struct Shader {
-    Shader(const CompiledScene& scene, const LightingScene& lights, const PathSettings& paths)
+struct RayShader {
+    RayShader(const CompiledScene& scene, const LightingScene& lights, const PathSettings& paths)
         : surfaces(scene, lights.materials, paths),
           lighting(lights, scene.rays(), paths.transparent_bounces, kWholeLight),
           hits(lights.lobe_stride) {}
@@ -75,7 +75,7 @@ class RadianceQuery {
                     lobes_of_materials(scene.materials(), settings.order, settings.tolerance, stopped), settings.order,
                     settings.tolerance),
           seen_(origins.size()),
-          shaders_([this] { return Shader(*scene_, lighting_, paths()); }) {}
+          shaders_([this] { return RayShader(*scene_, lighting_, paths()); }) {}
 
     void run(std::span<Vec3d> radiance);
 
@@ -88,8 +88,9 @@ class RadianceQuery {
     }
     /// Numbers by which CameraSurfaces tells a ray's light apart.
     std::size_t counts() const { return sees_lights_ ? 1 : paths().max_bounces; }
-    void shade(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t count, Shader& shader);
-    void add_up(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t count, const Shader& shader);
+    void shade(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t count, RayShader& shader);
+    void add_up(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t count,
+                const RayShader& shader);
     void erase_good(std::vector<std::uint32_t>& pixels, double count) const;
 
     const CompiledScene* scene_;
@@ -100,13 +101,13 @@ class RadianceQuery {
     LightingScene lighting_;
     std::vector<Seen> seen_;
     double least_square_ = 0;
-    tbb::enumerable_thread_specific<Shader> shaders_;
+    tbb::enumerable_thread_specific<RayShader> shaders_;
 };
 
 void RadianceQuery::run(std::span<Vec3d> radiance) {
     std::vector<std::uint32_t> pixels(origins_.size());
     std::iota(pixels.begin(), pixels.end(), 0U);
-    const std::uint32_t at_once = std::min(kBatchRays, lighting_.batch_size());
+    const std::uint32_t at_once = std::min(kRadianceBatch, lighting_.batch_size());
     const PixelSampling& sampling = settings_->sampling;
     const auto most = static_cast<std::uint32_t>(sampling.max_samples);
     const std::uint32_t least = settings_->max_bounces > 0 ? kLeastPaths : 1;
@@ -142,7 +143,7 @@ void RadianceQuery::erase_good(std::vector<std::uint32_t>& pixels, double count)
 }
 
 void RadianceQuery::shade(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t count,
-                          Shader& shader) {
+                          RayShader& shader) {
     shader.rays.clear();
     shader.seeds.clear();
     for (const std::uint32_t pixel : pixels) {
@@ -165,7 +166,7 @@ void RadianceQuery::shade(std::span<const std::uint32_t> pixels, std::uint32_t f
 }
 
 void RadianceQuery::add_up(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t count,
-                           const Shader& shader) {
+                           const RayShader& shader) {
     const Hits& hits = shader.hits;
     std::vector<Vec3d> radiance(count);
     for (std::size_t p = 0; p < pixels.size(); ++p) {
