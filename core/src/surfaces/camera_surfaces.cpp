@@ -324,8 +324,7 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     const float cosine = view_cosine(normal, surface.towards_viewer);
     for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
         // There is no program, so that no width varies.
-        const LobeShape shape =
-            lobe.varies() ? with_parameter(lobe.shape, azimuth_of_view(surface)) : lobe.shape;
+        const LobeShape shape = lobe.varies() ? with_parameter(lobe.shape, azimuth_of_view(surface)) : lobe.shape;
         lobes.push_back({shape, normal, lobe.scale(cosine)});
     }
 }
