@@ -76,6 +76,8 @@ def denoise(
 
 def _checked_picture(name: str, value: ArrayLike, size: tuple[int, ...] | None) -> Floats:
     array = checked_array(name, value, np.float32)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} contains a number that is not finite")
     if array.ndim != 3 or array.size == 0 or (size is None and array.shape[2] < 3):
         raise ValueError(f"{name} must have shape (height, width, channels), got {array.shape}")
     if size is not None:

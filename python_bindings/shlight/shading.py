@@ -280,7 +280,8 @@ def _seen_by(phi: Floats, vectors: Floats) -> Floats:
         return vectors
     c, s = np.cos(phi), np.sin(phi)
     x, y, z = np.moveaxis(vectors, -1, 0)
-    turned = np.broadcast_arrays(c * x + s * y, c * y - s * x, z)
+    with np.errstate(over="ignore", invalid="ignore"):  # the core says which row is too large or not finite
+        turned = np.broadcast_arrays(c * x + s * y, c * y - s * x, z)
     return np.stack(turned, axis=-1).astype(vectors.dtype)
 
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -70,7 +71,8 @@ class LobeFit {
 
     Rgb scale(double cosine) const { return lobe_.scale(static_cast<float>(cosine)); }
 
-    PlainView at(double cosine, double azimuth) const {
+    PlainView at(double cosine, double any_azimuth) const {
+        const double azimuth = std::remainder(any_azimuth, 2 * std::numbers::pi);  // so that m azimuth is finite
         if (fit_ == nullptr) {
             TableShape shape = std::get<TableShape>(lobe_.shape);
             shape.azimuth = azimuth;

@@ -350,7 +350,7 @@ def complaint(call: str, name: str, value: Any) -> str | None:
         named = str(error).startswith((name, *RELATED.get(name, ())))
         return None if named or name in ("f", "progress", "on_update") else f"{type(error).__name__}: {error}"
     except OSError as error:
-        return None if name == "path" else f"{type(error).__name__}: {error}"
+        return None if "path" in arguments else f"{type(error).__name__}: {error}"
     except shlight.RenderCancelled:
         return None if name == "progress" else "cancelled"
     except Exception as error:

@@ -34,7 +34,7 @@ def test_a_number_and_a_seed_make_one_case() -> None:
 
 def faulty(fault: str, **counts: int) -> dict[fuzz.Case, str]:
     """What is found where a function is replaced in all processes that work."""
-    script = f"import os, sys, time\nsys.path.insert(0, {FOLDER!r})\nimport fuzz, shlight\n{fault}\nfuzz.main()"
+    script = f"import os, sys, time\nsys.path.insert(0, {FOLDER!r})\nimport shlight\n{fault}\nimport fuzz\nfuzz.main()"
     return fuzz.run({"call": 0, "scene": 0, **counts}, seed=1, limit=0.5, program=(sys.executable, "-c", script))
 
 

@@ -31,7 +31,7 @@ def test_a_smaller_tolerance_is_nearer_to_the_truth(cosine: float) -> None:
             errors = np.abs(shade(tolerance=tolerance) - truth) / albedo(bsdf, cosine)
             assert np.quantile(errors, 0.99) <= 2 * tolerance
             assert errors.max() <= 10 * tolerance
-            assert errors.mean() <= min(tolerance, mean / 2)
+            assert errors.mean() <= min(tolerance, max(mean / 2, 2**-24))  # half of float32's last place
             mean = errors.mean()
 
 
