@@ -115,6 +115,7 @@ struct TableShape {
     /// Lambert's lobe, or a GGX lobe whose tails reach what a table holds beside its peak.
     LobeShape sampled() const;
 
+    // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
     auto operator<=>(const TableShape&) const = default;
 };
 

@@ -302,7 +302,7 @@ void PointCoefficients::add_deltas(std::size_t hit) {
     for (std::size_t i = 0; i < deltas_.padded_size(); ++i) {
         if (delta_views_.irradiance[i] > 0 && deltas_.shines(i, hits.frame[hit], hits.error[hit])) {
             numbers_.push_back(i);
-            ways_.push_back({delta_views_.x[i], delta_views_.y[i], delta_views_.z[i]});
+            ways_.emplace_back(delta_views_.x[i], delta_views_.y[i], delta_views_.z[i]);
             rays.push_back(deltas_.ray(i, hits.shadow_origin[hit]));
         }
     }
