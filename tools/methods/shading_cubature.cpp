@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/perpendicular.h"
@@ -43,8 +44,10 @@ void visit_rings(const SphericalCap& cap, int points, const Visit& visit) {
 
 class CubatureLobe : public LobeIntegrator {
   public:
-    CubatureLobe(const LobeShape& shape, double cos_theta_o, int points)
-        : shape_(shape), view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o), points_(points) {}
+    CubatureLobe(LobeShape shape, double cos_theta_o, int points)
+        : shape_(std::move(shape)),
+          view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o),
+          points_(points) {}
 
     Reflected radiance(const SphericalCap& cap, std::uint32_t /*seed*/) const override {
         if (cap.axis.z <= -cap.sine) {

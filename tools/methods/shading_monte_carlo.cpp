@@ -5,6 +5,7 @@
 // 1995).
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "method.h"
 #include "random_directions.h"
@@ -15,8 +16,8 @@ namespace {
 
 class MonteCarloLobe : public LobeIntegrator {
   public:
-    MonteCarloLobe(const LobeShape& shape, double cos_theta_o, const Options& options)
-        : shape_(shape),
+    MonteCarloLobe(LobeShape shape, double cos_theta_o, const Options& options)
+        : shape_(std::move(shape)),
           view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o),
           samples_(options.samples),
           sampling_(options.sampling) {}

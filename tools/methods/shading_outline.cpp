@@ -3,6 +3,7 @@
 // Integrates the true f·cos along the light's contour, in the plane of half vectors.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lobes/boundary_integral.h"
 #include "method.h"
@@ -19,8 +20,8 @@ constexpr double kSmallestCap = 1e-7;
 
 class OutlineLobe : public LobeIntegrator {
   public:
-    OutlineLobe(const LobeShape& shape, double cos_theta_o, double tolerance)
-        : shape_(shape), cos_theta_o_(cos_theta_o), tolerance_(tolerance) {}
+    OutlineLobe(LobeShape shape, double cos_theta_o, double tolerance)
+        : shape_(std::move(shape)), cos_theta_o_(cos_theta_o), tolerance_(tolerance) {}
     Reflected radiance(const SphericalCap& cap, std::uint32_t /*seed*/) const override {
         if (cap.sine < kSmallestCap) {
             const Vec3d above(cap.axis.x, cap.axis.y, std::max(cap.axis.z, 0.0));
