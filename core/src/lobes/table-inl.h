@@ -89,6 +89,7 @@ class TableLanes {
 
     /// function(numbers of a lane) for each lane.
     template <class D, std::size_t kCount, class Function>
+    // NOLINTNEXTLINE(modernize-avoid-c-arrays): its size is found from braces, which std::array does not allow
     static HWY_INLINE V<D> each_lane(D d, const V<D> (&vectors)[kCount], const Function& function) {
         alignas(64) std::array<std::array<Scalar<D>, kLaneCount<D>>, kCount> lanes;
         for (std::size_t k = 0; k < kCount; ++k) {
