@@ -8,11 +8,11 @@ from typing import Any
 
 from .passes import Arrays
 
-FEATURES = ("denoising_albedo", "denoising_normal")
-
 
 def with_features(passes: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of `shlight.render` that ask for what `denoised` needs, too."""
+    from shlight.denoising import FEATURES
+
     return {**passes, "passes": list(dict.fromkeys([*passes.get("passes", ()), *FEATURES]))}
 
 
@@ -22,6 +22,7 @@ def denoised(arrays: Arrays, quality: str, threads: int, goes_on: Callable[[floa
     goes_on: False leaves the picture as it is.
     """
     import shlight
+    from shlight.denoising import FEATURES
 
     features = (arrays[name] for name in FEATURES)
     try:

@@ -22,6 +22,9 @@ from shlight._core import RenderCancelled
 
 __all__ = ["denoise", "has_denoiser"]
 
+FEATURES = ("denoising_albedo", "denoising_normal")
+"""The passes that `denoise` takes beside the picture, in their order."""
+
 _NAMES = (
     "libOpenImageDenoise.so.2",
     "libOpenImageDenoise.so.1",

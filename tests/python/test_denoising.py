@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 from scene_cases import FACES, FLOOR, SQUARE, from_above
 
 import shlight
+from shlight.denoising import FEATURES
 from shlight.metrics import rel_mse
 
 pytestmark = pytest.mark.skipif(not shlight.has_denoiser(), reason="Open Image Denoise is missing")
-
-FEATURES = ("denoising_albedo", "denoising_normal")
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import shlight
+from shlight.denoising import FEATURES
 from shlight.quiet import quiet
 
 from .picture_scenes import BallLamp, Light, PictureScene, Sun, Thing
@@ -80,7 +81,7 @@ class Shlight:
     def picture(self, seconds: float) -> tuple[float, Image]:
         """The picture that there is time for, and what it took."""
         start = time.perf_counter()
-        features = ("denoising_albedo", "denoising_normal") if self.denoised else ()
+        features = FEATURES if self.denoised else ()
         made = shlight.render(self._scene, self._size, self._size, **self._options, time_limit=seconds, passes=features)
         if self.denoised:
             made = shlight.denoise(made["combined"], *(made[name] for name in features), quality="balanced")
