@@ -38,7 +38,7 @@ std::string with_traits(const char* doc) {
 
 constexpr const char* kSphereDoc = R"(Add a sphere light. It blocks no light.
 
-center: (3,). radius: > 0. radiance: RGB [W m^-2 sr^-1]; negative takes light away.
+center: (3,). radius: > 0. radiance: a number or RGB [W m^-2 sr^-1]; negative takes light away.
 facing_disk: a disk that always faces the shading point, of half angle atan(radius / distance), instead of the sphere of
     half angle asin(radius / distance).
 A point inside the sphere is lit from its whole hemisphere.
@@ -48,7 +48,7 @@ constexpr const char* kPolygonDoc =
     R"(Add a one-sided polygon light. It blocks no light.
 
 vertices: (k, 3), k >= 3, planar and simple, convex or not. It shines to the side that sees them counter-clockwise.
-radiance: RGB [W m^-2 sr^-1]; negative takes light away.
+radiance: a number or RGB [W m^-2 sr^-1]; negative takes light away.
 spread: angle [rad] within which it shines, as through a honeycomb grid, 0 < spread <= pi. In a direction at an angle
     alpha to its normal, radiance is multiplied by max(tan h - tan alpha, 0) / (tan h - h), h = spread / 2; pi is even.
 )";
@@ -58,12 +58,12 @@ constexpr const char* kDiskDoc =
 
 center, half_axis_u, half_axis_v: (3,), as of disk_coefficients: the points center + a half_axis_u + b half_axis_v with
     a^2 + b^2 <= 1, half axes at right angles or not. It shines to the side of half_axis_u x half_axis_v.
-radiance: RGB [W m^-2 sr^-1]; negative takes light away. spread: see add_polygon_light.
+radiance: a number or RGB [W m^-2 sr^-1]; negative takes light away. spread: see add_polygon_light.
 )";
 
 constexpr const char* kPointDoc = R"(Add a light of no size, with sharp shadows. Mirrors do not show it.
 
-position: (3,). intensity: RGB [W sr^-1]; a sphere of radius r and radiance L has pi r^2 L from afar.
+position: (3,). intensity: a number or RGB [W sr^-1]; a sphere of radius r and radiance L has pi r^2 L from afar.
 )";
 
 constexpr const char* kSpotDoc = R"(Add a sphere light, or a light of no size, that shines into a cone with a soft rim.
@@ -72,7 +72,7 @@ position: (3,), its centre. direction: (3,), of the cone's axis; or (3, 3), the 
     it shines along -z, and angles are those of that frame, so that scaled axes make an elliptical cone.
 spot_angle: of the whole cone [rad], 0 < spot_angle <= pi. blend: 0 ... 1, the share of it that fades: with z the cosine
     of the angle to the axis and c that of the cone's rim, radiance is multiplied by smoothstep((z - c) / ((1 - c) blend)).
-intensity: RGB [W sr^-1] along the axis; with a radius r, the radiance there is intensity / (pi r^2).
+intensity: a number or RGB [W sr^-1] along the axis; with a radius r, the radiance there is intensity / (pi r^2).
 radius: >= 0; 0 is a light of no size. facing_disk: see add_sphere_light.
 times_cosine: multiply once more by z, as Blender did before version 4.
 )";
@@ -80,7 +80,7 @@ times_cosine: multiply once more by z, as Blender did before version 4.
 constexpr const char* kSunDoc = R"(Add a sun: a disk infinitely far away.
 
 direction: (3,), the way its light travels, of any length. angle: its diameter [rad], 0 ... pi; 0 has sharp shadows and
-    mirrors do not show it. irradiance: RGB [W m^-2] on a surface at right angles to the direction.
+    mirrors do not show it. irradiance: a number or RGB [W m^-2] on a surface at right angles to the direction.
 tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; True: irradiance / (pi tan^2(angle / 2)
     cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
 )";
@@ -163,7 +163,7 @@ LampHandle add_sphere_light(const py::object& self, const py::object& center, co
                             const py::object& group) {
     const Vec3d place = vector_from("center", center);
     const double size = real_from("radius", radius);
-    const Rgb strength = rgb_from("radiance", radiance);
+    const Rgb strength = color_from("radiance", radiance);
     const bool faces = flag_from("facing_disk", facing_disk);
     return add_lamp(self, {"sphere", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
                            [=](const LampRecord& own) -> Light {
@@ -176,7 +176,7 @@ LampHandle add_polygon_light(const py::object& self, const py::object& vertices,
                              const py::object& spread, const py::object& shadows, const py::object& diffuse,
                              const py::object& glossy, const py::object& camera, const py::object& group) {
     const std::vector<Vec3d> corners = points_from("vertices", vertices);
-    const Rgb strength = rgb_from("radiance", radiance);
+    const Rgb strength = color_from("radiance", radiance);
     const double angle = real_from("spread", spread);
     return add_lamp(self, {"polygon", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
                            [=](const LampRecord& own) -> Light {
@@ -197,7 +197,7 @@ LampHandle add_disk_light(const py::object& self, const py::object& center, cons
     const Vec3d place = vector_from("center", center);
     const Vec3d u = vector_from("half_axis_u", half_axis_u);
     const Vec3d v = vector_from("half_axis_v", half_axis_v);
-    const Rgb strength = rgb_from("radiance", radiance);
+    const Rgb strength = color_from("radiance", radiance);
     const double angle = real_from("spread", spread);
     return add_lamp(self, {"disk", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
                            [=](const LampRecord& own) -> Light {
@@ -211,7 +211,7 @@ LampHandle add_point_light(const py::object& self, const py::object& position, c
                            const py::object& shadows, const py::object& diffuse, const py::object& glossy,
                            const py::object& camera, const py::object& group) {
     const Vec3d place = vector_from("position", position);
-    const Rgb strength = rgb_from("intensity", intensity);
+    const Rgb strength = color_from("intensity", intensity);
     return add_lamp(self, {"point", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
                            [=](const LampRecord& own) -> Light {
                                return make_point_source(moved(own, place), own.strength, own.traits);
@@ -228,7 +228,7 @@ LampHandle add_spot_light(const py::object& self, const py::object& position, co
     const double angle = real_from("spot_angle", spot_angle);
     const double fading = real_from("blend", blend);
     const bool cosine = flag_from("times_cosine", times_cosine);
-    const Rgb strength = rgb_from("intensity", intensity);
+    const Rgb strength = color_from("intensity", intensity);
     const double size = real_from("radius", radius);
     const bool faces = flag_from("facing_disk", facing_disk);
     return add_lamp(self, {"spot", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
@@ -247,7 +247,7 @@ LampHandle add_sun_light(const py::object& self, const py::object& direction, co
                          const py::object& group) {
     const Vec3d way = vector_from("direction", direction);
     const double size = real_from("angle", angle);
-    const Rgb strength = rgb_from("irradiance", irradiance);
+    const Rgb strength = color_from("irradiance", irradiance);
     const bool is_tangent = flag_from("tangent", tangent);
     return add_lamp(self, {"sun", "irradiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
                            [=](const LampRecord& own) -> Light {
@@ -274,7 +274,7 @@ py::array strength(const LampHandle& self, const char* name) {
 void set_strength(const LampHandle& self, const char* name, const py::object& value) {
     strength(self, name);
     LampRecord record = self.record();
-    record.strength = rgb_from(name, value);
+    record.strength = color_from(name, value);
     self.change(std::move(record));
 }
 

@@ -235,8 +235,11 @@ std::vector<Emission> emission_from(const py::object& value) {
     }
     const AnyArray<float> array = array_from<float>("emission", value);
     const bool has_sides = fits(array, {kAny, 2, 3});
+    if (array.ndim() == 0) {
+        return {Rgb(*array.data())};
+    }
     if (!fits(array, {3}) && !((fits(array, {kAny, 3}) || has_sides) && array.size() > 0)) {
-        throw std::invalid_argument("emission must have shape (3,), (m, 3) or (m, 2, 3)");
+        throw std::invalid_argument("emission must be a number or have shape (3,), (m, 3) or (m, 2, 3)");
     }
     const std::span<const Rgb> all = vectors("emission", array);
     std::vector<Emission> result;
@@ -265,10 +268,6 @@ void set_normals(MeshShape& mesh, const py::object& value) {
 
 Vec3d vector_from(const char* name, const py::handle& value) {
     return vectors(name, numbers<double>(name, value, {3}))[0];
-}
-
-Rgb rgb_from(const char* name, const py::handle& value) {
-    return vectors(name, numbers<float>(name, value, {3}))[0];
 }
 
 std::vector<Vec3d> points_from(const char* name, const py::handle& value) {
@@ -313,11 +312,11 @@ glm::dmat3 rotation_from(const char* name, const py::handle& value) {
 
 Environment environment_from(const char* name, const py::handle& value, const glm::dmat3& to_world) {
     const AnyArray<float> array = array_from<float>(name, value);
-    if (fits(array, {3})) {
-        return Environment(vectors(name, array)[0]);
+    if (array.ndim() < 2) {
+        return Environment(color_from(name, array));
     }
     if (!fits(array, {kAny, kAny, 3})) {
-        throw std::invalid_argument(std::string(name) + " must have shape (3,) or (height, width, 3)");
+        throw std::invalid_argument(std::string(name) + " must be a number or have shape (3,) or (height, width, 3)");
     }
     if (array.shape(0) > std::numeric_limits<int>::max() || array.shape(1) > std::numeric_limits<int>::max()) {
         throw std::invalid_argument(std::string(name) + " is too large");

@@ -18,8 +18,6 @@ namespace shlight::python {
 
 /// Shape (3,).
 Vec3d vector_from(const char* name, const pybind11::handle& value);
-/// A radiance: shape (3,).
-Rgb rgb_from(const char* name, const pybind11::handle& value);
 /// Shape (n, 3).
 std::vector<Vec3d> points_from(const char* name, const pybind11::handle& value);
 /// A lamp's frame, see make_spot_profile(): its axes as columns, shape (3, 3), or the direction in which it shines,
@@ -35,7 +33,7 @@ pybind11::array array_of(const glm::dmat4& matrix);
 
 /// Shape (3, 3), to be multiplied with column vectors.
 glm::dmat3 rotation_from(const char* name, const pybind11::handle& value);
-/// A radiance, shape (3,), or a lat-long picture, shape (height, width, 3), rotated by `to_world`.
+/// A radiance, a number or shape (3,), or a lat-long picture, shape (height, width, 3), rotated by `to_world`.
 Environment environment_from(const char* name, const pybind11::handle& value, const glm::dmat3& to_world);
 
 /// Arguments of Scene.add_mesh about materials; None if they are omitted.

@@ -34,8 +34,8 @@ uvs: (n, 2) per vertex or (k, 3, 2) per triangle corner, or a dict of such array
 colors, attributes: likewise, of one to four numbers per vertex, triangle or triangle corner; shlight.nodes.attribute()
     reads them.
 bsdf: a Bsdf or a Shader of shlight.nodes, or a sequence with one per material; None: Bsdf.lambert(0.8).
-emission: emitted radiance [W m^-2 sr^-1] of both sides, RGB, or (m, 3) with one per material, or (m, 2, 3) with that of
-    the front, from where a triangle's corners run counter-clockwise in the mesh's frame, and that of the back; None:
+emission: emitted radiance [W m^-2 sr^-1] of both sides: a number, RGB, or (m, 3) with one per material, or
+    (m, 2, 3) with that of the front, from where a triangle's corners run counter-clockwise in the mesh's frame, and that of the back; None:
     none. Emissive faces light the scene, are seen by the camera and block light.
 material_indices: (k,) integers, the material of each triangle; None: 0 for all.
 transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
@@ -70,8 +70,8 @@ Raises ValueError naming the argument; the mesh is then as it was.)";
 constexpr const char* kEnvironmentDoc =
     R"(Set the light that comes from infinitely far all around; it takes the place of the one before.
 
-radiance: [W m^-2 sr^-1], not negative: RGB, the same from everywhere, or (height, width, 3), a picture of all directions
-    in equal steps of latitude and longitude, bilinear between the centres of its texels. Row 0 lies around +z; columns
+radiance: [W m^-2 sr^-1], not negative: a number or RGB, the same from everywhere, or (height, width, 3), a
+    picture of all directions in equal steps of latitude and longitude, bilinear between the centres of its texels. Row 0 lies around +z; columns
     go from -x over +y, +x (the middle) and -y back to -x, as in Blender.
 to_world: (3, 3), a rotation of the picture, for column vectors; None: none.
 visible: the camera sees it behind the scene, where the picture is then opaque.

@@ -201,3 +201,25 @@ def test_handles_say_what_they_are() -> None:
     assert repr(scene) == "Scene(3 meshes, 1 light, an environment)"
     mesh.remove()
     assert repr(mesh) == "SceneMesh(removed)"
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_a_number_is_a_grey_light(kind: str) -> None:
+    strength, arguments, _ = LIGHTS[kind]
+    scene = shlight.Scene()
+    lamp = getattr(scene, f"add_{kind}_light")(**{**arguments, strength: 2})
+    assert getattr(lamp, strength).tolist() == [2, 2, 2]
+    setattr(lamp, strength, 0.5)
+    assert getattr(lamp, strength).tolist() == [0.5, 0.5, 0.5]
+
+
+def test_a_number_is_grey_emission_and_a_grey_sky() -> None:
+    pictures = []
+    for grey in (0.7, [0.7] * 3):
+        scene = shlight.Scene()
+        scene.add_mesh(FLOOR, FACES, emission=grey)
+        scene.set_environment(grey)
+        scene.set_camera(shlight.look_at((0, -3, 2), (0, 0, 0)), 0.8)
+        pictures.append(shlight.render(scene, 16, 9))
+    np.testing.assert_array_equal(*pictures)
+    assert pictures[0].min() > 0
