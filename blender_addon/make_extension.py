@@ -11,13 +11,10 @@ import re
 import sys
 import tomllib
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 
 ADDON = Path(__file__).resolve().parent / "shlight_blender"
 LICENSE = ADDON.parent / "LICENSE"
-# Parts that only the command line uses: comparisons with Cycles of whole files and folders.
-LEFT_OUT = {"preview", "survey", "arguments.py", "supervision.py"}
 # The same sources give the same zip.
 DATE = (1980, 1, 1, 0, 0, 0)
 
@@ -41,18 +38,12 @@ def make_extension(wheels: Path, dist: Path) -> Path:
     with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:
         _write(archive, "blender_manifest.toml", manifest.encode())
         _write(archive, "LICENSE", LICENSE.read_bytes())
-        for source in sorted(_sources()):
+        for source in sorted(ADDON.rglob("*.py")):
             _write(archive, source.relative_to(ADDON).as_posix(), source.read_bytes())
         for name in names:
             _write(archive, f"wheels/{name}", (wheels / name).read_bytes(), zipfile.ZIP_STORED)
     unfinished.replace(path)
     return path
-
-
-def _sources() -> Iterator[Path]:
-    for path in ADDON.rglob("*.py"):
-        if LEFT_OUT.isdisjoint(path.relative_to(ADDON).parts):
-            yield path
 
 
 def _write(archive: zipfile.ZipFile, name: str, content: bytes, compression: int = zipfile.ZIP_DEFLATED) -> None:

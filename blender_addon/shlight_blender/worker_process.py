@@ -6,6 +6,7 @@ Blender renders in one: whatever it prints, and even its crash, then ends in one
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import select
@@ -46,6 +47,14 @@ class WorkerError(Exception):
     def __init__(self, text: str, exit_code: int) -> None:
         super().__init__(text)
         self.exit_code = exit_code
+
+
+def check_blender() -> None:
+    """Raises CommandError where a worker would find no Blender."""
+    from shlight.commands import CommandError
+
+    if importlib.util.find_spec("bpy") is None:
+        raise CommandError("the Python module bpy is missing: pip install 'shlight[blender]'", 1)
 
 
 class WorkerProcess:

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from shlight_blender.compare.scene import bounces_of
-from shlight_blender.rendering import use_cycles
+from shlight_blender.background import use_cycles
+from shlight_blender.compare.render import bounces_of
 
 
 def compare(studio: Any, samples: int = 512, **bounds: float) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from shlight_blender.compare import differences, job, panel, places, results, session
+from shlight_blender.compare import job, measure, panel, places, results, session
 from shlight_blender.compare.pictures import PALETTE, in_palette
 
 Image = NDArray[np.float32]
@@ -201,7 +201,7 @@ def test_noise_and_edges_alone_are_no_difference(seed: int) -> None:
     truth = plain_picture()
     aliased = truth.copy()
     aliased[:, 80] = truth[:, 79]
-    assert differences.largest_differences(aliased, noisy_halves(truth, seed)) == []
+    assert measure.largest_differences(aliased, noisy_halves(truth, seed)) == []
 
 
 def test_the_largest_differences_come_first_and_apart() -> None:
@@ -210,7 +210,7 @@ def test_the_largest_differences_come_first_and_apart() -> None:
     image[24:36, 114:126] *= 1.6
     image[80:100, 20:40] *= 0.5
     image[90:100, 120:130] *= 1.5
-    found = differences.largest_differences(image, noisy_halves(truth, 1))
+    found = measure.largest_differences(image, noisy_halves(truth, 1))
     centres = [(119.5, 29.5), (124.5, 94.5), (29.5, 89.5)]
     for each, (x, y), sign in zip(found, centres, (1, 1, -1), strict=True):
         assert max(abs(each.x - 0.5 - x), abs(each.y - 0.5 - y)) <= 6

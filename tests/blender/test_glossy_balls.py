@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from shlight.metrics import mean_ratio, reference_rel_mse, rel_mse
-from shlight_blender.compare.scene import without_shadows
+from shlight_blender.compare.render import without_shadows
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "glossy_balls.py"
 SIDE = 64  # pixels of a picture, which one ball fills

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `shlight preview`. Whole runs are few: each starts a Blender."""
+"""The command `./dev preview`. Whole runs are few: each starts a Blender."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ import bpy
 import pytest
 
 from shlight import images, metrics
-from shlight_blender.compare.scene import LIGHT_RAYS, bounces_of, open_scene, prepare, without_shadows
-from shlight_blender.preview import main, options
-from shlight_blender.preview.command import FIRST_RESULTS, RESULTS
-from shlight_blender.rendering import use_cycles
+from shlight_blender.background import open_scene, use_cycles
+from shlight_blender.compare.render import LIGHT_RAYS, bounces_of, without_shadows
 from shlight_blender.serving import SceneError
+from shlight_tools.preview import main, options
+from shlight_tools.preview.command import FIRST_RESULTS, RESULTS
+from shlight_tools.preview.worker import prepare
 
-COMMAND = [sys.executable, "-c", "import sys; from shlight_blender.preview import main; sys.exit(main(sys.argv[1:]))"]
+COMMAND = [sys.executable, "-c", "import sys; from shlight_tools.preview import main; sys.exit(main(sys.argv[1:]))"]
 QUICK = ["--size", "24x16", "--samples", "8", "--shadow-rays", "4", "--pixel-samples", "2", "--tolerance", "0.01"]
 QUICK += ["--max-bounces", "0"]
 ENDLESS = ["--size", "24x16", "--samples", "10000000", "--reference-seconds", "0"]
@@ -193,7 +194,7 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> str:
     assert main([*map(str, arguments)]) == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1
-    assert err.startswith("shlight preview: ")
+    assert err.startswith("./dev preview: ")
     assert sorted(Path().rglob("*")) == before
     return err
 
@@ -202,8 +203,8 @@ def test_requests_that_cannot_be_met(
     tmp_path: Path, empty_scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert refused(capsys, "no.blend") == "shlight preview: no.blend: No such file or directory\n"
-    assert refused(capsys, tmp_path) == f"shlight preview: {tmp_path}: Is a directory\n"
+    assert refused(capsys, "no.blend") == "./dev preview: no.blend: No such file or directory\n"
+    assert refused(capsys, tmp_path) == f"./dev preview: {tmp_path}: Is a directory\n"
     Path("taken").touch()
     assert "taken is a file" in refused(capsys, "--out", "taken")
     assert "taken" in refused(capsys, "--out", "taken/below")
@@ -234,13 +235,13 @@ def test_without_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
     with monkeypatch.context() as patch:
         patch.setattr(importlib.util, "find_spec", lambda name: None)
         assert main([]) == 1
-    missing = "shlight preview: the Python module bpy is missing: pip install 'shlight[blender]'\n"
+    missing = "./dev preview: the Python module bpy is missing: pip install 'shlight[blender]'\n"
     # A worker that ends at once stands for a Blender that crashes.
     Path("bpy.py").write_text("import os; print('Blender is tired', flush=True); os.abort()\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     assert main([]) == 1
     assert capsys.readouterr().err == missing + (
-        "shlight preview: example_scene: Blender ended unexpectedly with signal SIGABRT; "
+        "./dev preview: example_scene: Blender ended unexpectedly with signal SIGABRT; "
         "its last words: Blender is tired\n"
     )
     assert names(tmp_path) == ["bpy.py"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `shlight survey`. Each file of a folder starts a Blender; one run over all of them serves most tests."""
+"""The command `./dev survey`. Each file of a folder starts a Blender; one run over all of them serves most tests."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ import pytest
 from studio import Studio
 
 from shlight import images, metrics
-from shlight_blender.survey import command, main, records
-from shlight_blender.survey.features import features_of
-from shlight_blender.survey.staging import add_camera, add_lamps
+from shlight_tools.survey import command, main, records
+from shlight_tools.survey.features import features_of
+from shlight_tools.survey.staging import add_camera, add_lamps
 
 # The command with the worker below.
 COMMAND = [
     sys.executable,
     "-c",
-    "import sys; from shlight_blender.survey import command; command.WORKER = 'faulty_worker'; "
+    "import sys; from shlight_tools.survey import command; command.WORKER = 'faulty_worker'; "
     "sys.exit(command.main(sys.argv[1:]))",
 ]
 TIME_LIMIT = 30  # s: several times what a file takes beside other tests
@@ -36,7 +36,7 @@ TIME_LIMIT = 30  # s: several times what a file takes beside other tests
 # A worker that crashes or hangs where shlight renders a file of such a name.
 FAULTY_WORKER = """
 import os, sys, time
-from shlight_blender.survey import worker
+from shlight_tools.survey import worker
 render = worker.SurveyWorker._render_shlight
 def _render_shlight(self):
     if "crash" in self._request.scene:
@@ -211,7 +211,7 @@ def test_requests_that_cannot_be_met(tmp_path: Path, capsys: pytest.CaptureFixtu
     taken = str(tmp_path / "a.blend")
     for arguments in ([], ["no such folder"], [taken], [str(tmp_path / "empty")], [str(tmp_path), "--out", taken]):
         assert main(arguments) == 2
-        assert capsys.readouterr().err.startswith("shlight survey: ")
+        assert capsys.readouterr().err.startswith("./dev survey: ")
     assert main([str(tmp_path), "--jobs", "0"]) == 2
 
 

@@ -15,9 +15,8 @@ from ..native import native_problem
 from ..other_blender import command, environment, save_unsaved_images
 from ..running import ENGINE
 from ..worker_process import Stage, WorkerError, WorkerProcess
-from .request import Request
 
-WORKER = "compare.panel_worker"
+WORKER = "compare.render"
 MOST_SAMPLES = 2**16  # of the reference
 PAINTED_SOURCES = {"FILE", "GENERATED"}  # of images whose pixels may be in no file
 
@@ -37,17 +36,17 @@ class Job:
         except OSError as error:
             raise CompareError(one_line(error)) from error
         try:
-            request = Request(
-                samples=MOST_SAMPLES,
-                scene=str(self.folder / "scene.blend"),
-                scene_name=context.scene.name,
-                view_layer=context.view_layer.name,
-                use_scripts=context.preferences.filepaths.use_scripts_auto_execute and not bpy.app.autoexec_fail,
-                denoise=denoise,
-                reference_seconds=reference_seconds,
-                images=_save_copy(context.scene, self.folder),
-            )
-            self._worker = WorkerProcess(command(WORKER), request.to_data(), self.folder, environment())
+            request = {
+                "samples": MOST_SAMPLES,
+                "scene": str(self.folder / "scene.blend"),
+                "scene_name": context.scene.name,
+                "view_layer": context.view_layer.name,
+                "use_scripts": context.preferences.filepaths.use_scripts_auto_execute and not bpy.app.autoexec_fail,
+                "denoise": denoise,
+                "reference_seconds": reference_seconds,
+                "images": _save_copy(context.scene, self.folder),
+            }
+            self._worker = WorkerProcess(command(WORKER), request, self.folder, environment())
         except BaseException as error:
             shutil.rmtree(self.folder, ignore_errors=True)
             if isinstance(error, (OSError, RuntimeError)):

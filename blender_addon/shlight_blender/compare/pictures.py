@@ -14,13 +14,6 @@ PALETTE = "PuOr"  # diverging, told apart by the colour-blind too
 PALETTE_COLORS = (
     "7f3b08", "b35806", "e08214", "fdb863", "fee0b6", "f7f7f7", "d8daeb", "b2abd2", "8073ac", "542788", "2d004b",
 )  # fmt: skip
-WHITE_AT = 0.8  # linear value to which the brightest parts are brought
-
-
-def common_exposure(reference: npt.NDArray[np.float32]) -> float:
-    """Stops by which all pictures are brightened: few of the reference's pixels are then brighter than WHITE_AT."""
-    bright = float(np.percentile(reference[..., :3].max(axis=-1), 95))
-    return math.log2(WHITE_AT / bright) if bright > 0 else 0.0
 
 
 def difference_limit(difference: npt.NDArray[np.float64]) -> float:

@@ -20,8 +20,8 @@ import numpy as np
 from mathutils import Euler, Vector
 from numpy.typing import NDArray
 
+from ..background import last_picture, leave_plain, set_threads, use_cycles
 from ..other_blender import load_unsaved_images
-from ..rendering import last_picture, leave_plain, set_threads, use_cycles
 from ..serving import Channel, serve
 
 Picture = NDArray[np.float32]

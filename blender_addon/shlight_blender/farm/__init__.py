@@ -11,7 +11,7 @@ from typing import Any
 
 from shlight.commands import CommandError, interrupts_blocked
 
-from ..compare.supervision import check_blender
+from ..worker_process import check_blender
 from .source import SceneFile, describe
 
 

@@ -12,7 +12,7 @@ import bpy
 
 from shlight.quiet import quiet
 
-from ..compare.scene import open_scene
+from ..background import open_scene
 from ..compat import compositing_nodes
 from ..frame import frame_of
 from ..names import name_of

@@ -14,11 +14,11 @@ from shlight.farm import Rendered
 from shlight.quiet import quiet
 
 from .. import record
+from ..background import leave_plain
 from ..compat import choose_layers
 from ..frame import Frame, frame_of
 from ..names import one_line
 from ..passes import layer_passes
-from ..rendering import leave_plain
 
 Box = tuple[int, int, int, int]
 

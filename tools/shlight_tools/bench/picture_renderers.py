@@ -117,7 +117,7 @@ class Cycles:
     def _build(self) -> None:
         import bpy
 
-        from shlight_blender.rendering import leave_plain, set_threads
+        from shlight_blender.background import leave_plain, set_threads
 
         self._bpy = bpy
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -143,7 +143,7 @@ class Cycles:
 
     def _render(self, samples: int, seed: int, denoise: bool | None = None) -> tuple[float, Image]:
         """denoise: None for as the renderer is named."""
-        from shlight_blender.rendering import last_picture, use_cycles
+        from shlight_blender.background import last_picture, use_cycles
 
         scene, most = self._bpy.context.scene, self._scene.max_bounces
         use_cycles(scene, samples, seed, (most, most, most), denoise=self.denoised if denoise is None else denoise)

@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""`shlight survey`: finds the files, has a worker render each, says how it went, and keeps the results."""
+# SPDX-License-Identifier: MIT
+"""`./dev survey`: finds the files, has a worker render each, says how it went, and keeps the results."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ import numpy as np
 
 from shlight import images
 from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
+from shlight_blender.worker_process import LOG, Stage, check_blender
 
-from ..compare.supervision import check_blender, run_worker
-from ..worker_process import LOG, Stage
+from ..preview.supervision import run_worker
 from . import records
 from .options import SUFFIXES, Options, parse
 from .records import Record
 from .sheet import strip, write_sheet
 
-WORKER = "shlight_blender.survey.worker"
+WORKER = "shlight_tools.survey.worker"
 JSON, SHEET, PICTURES = "survey.json", "contact_sheet.png", "pictures"
 PARTS = ("strip.png", "shlight.exr", "cycles.exr")  # of each file
 LOG_LINES = 20  # that are kept of a file that failed
@@ -35,7 +35,7 @@ LOG_LINES = 20  # that are kept of a file that failed
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; its exit code: 2 for a request that cannot be met, 1 for a failure on the way."""
     arguments = sys.argv[1:] if argv is None else argv
-    return run_command("shlight survey", lambda: _work(arguments), when_interrupted="nothing was written")
+    return run_command("./dev survey", lambda: _work(arguments), when_interrupted="nothing was written")
 
 
 def _work(arguments: list[str]) -> None:

@@ -3,34 +3,47 @@
 
 It leaves shlight.npy, cycles_same_time.npy and reference.npy in its folder: float32 (height, width, 4), linear, row 0
 on top. Its figures are "shlight", "cycles_same_time" and "reference"; shlight's are known, and its picture is there,
-before Cycles renders. `serving` has the messages, and each command and panel that compares has a subclass.
+before Cycles renders. `serving` has the messages.
+
+The panel's also leaves difference.npy (height, width), and its figures have "differences". Where no time is given for
+a reference there is none, and "rel_mse_of_both".
 """
 
 from __future__ import annotations
 
-import os
-import sys
 import time
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import bpy
 import numpy as np
 
+from shlight import metrics
+
 from .. import record
 from .. import register as register_addon
+from ..background import Bounces, few_pixels, last_picture, leave_plain, open_blend, use_cycles, use_denoiser
+from ..export.expressions import Surroundings
+from ..export.materials import read_material
 from ..names import name_of
-from ..rendering import last_picture, use_cycles
+from ..other_blender import load_unsaved_images
+from ..report import ExportReport
+from ..running import ENGINE
 from ..serving import Channel, SceneError, serve
-from .measurements import add_measurements
-from .reference import Image, render_halves
-from .request import Request
-from .scene import bounces_of, few_pixels, open_scene, prepare, use_shlight, without_shadows
-from .timing import SampleTime, alternate, calibrate, middle, rounds_for
+from .measure import Image, add_measurements, largest_differences
+from .places import Finder, show_what_is_rendered
+from .reference import Request, SampleTime, alternate, calibrate, middle, render_halves, rounds_for
 
 # Random seeds; no two pictures of Cycles may share one.
 SEED_SAME_TIME, SEEDS_OF_HALVES = 0, (1, 2)
+# Rays that find an object in their way, other than the camera's.
+LIGHT_RAYS = ("visible_diffuse", "visible_glossy", "visible_shadow")
+MOST_MARKERS = 5
+# Samples from which two pictures tell their noise, and the time that each of them may take for so many.
+ENOUGH_FOR_NOISE, NOISE_SECONDS = 16, 5.0
 
 
 class Worker:
@@ -68,15 +81,17 @@ class Worker:
     def _circumstances(self) -> dict[str, Any]:
         return {
             "scene": {"name": name_of(self._scene), "frame": self._scene.frame_current},
-            "threads": self._request.threads or len(os.sched_getaffinity(0)),
+            "threads": self._scene.render.threads,
             "blender": bpy.app.version_string,
         }
 
     def _open(self) -> Any:
-        return open_scene(Path(self._request.scene))
+        """Opens the scene."""
+        raise NotImplementedError
 
     def _set_up(self) -> None:
-        prepare(self._scene, self._request)
+        """Settings that all renders share."""
+        leave_plain(self._scene.render)
 
     def _shlight(self) -> dict[str, Any]:
         """shlight's picture, and what it reports of it. A first render of few pixels fills its tables."""
@@ -133,7 +148,7 @@ class Worker:
         self._leave("reference", add_measurements(figures, self.pictures, (halves[0], halves[1])))
 
     def _render_shlight(self) -> float:
-        use_shlight(self._scene, self._request)
+        self._scene.render.engine = ENGINE
         return _render()
 
     def _render_same_time(self, samples: int) -> float:
@@ -186,10 +201,103 @@ def _render() -> float:
     return time.perf_counter() - start
 
 
-def serve_with(worker: type[Worker], arguments: list[str]) -> None:
-    """Serves the request of a folder; see `serving`."""
-    serve(lambda given, folder, channel: worker(Request.from_data(given), folder, channel).figures(), arguments)
+def bounces_of(scene: Any) -> Bounces:
+    """The bounces that shlight renders."""
+    settings = scene.shlight
+    return settings.max_bounces, settings.glossy_bounces, settings.transmission_bounces
 
 
-if __name__ == "__main__":
-    serve_with(Worker, sys.argv[1:])
+@contextmanager
+def without_shadows() -> Iterator[None]:
+    """Meanwhile surfaces that do not glow are seen by the camera alone, and no light that Cycles follows meets them."""
+    surfaces = [seen for seen in bpy.data.objects if seen.type != "LIGHT" and not _glows(seen)]
+    before = [(seen, flag, getattr(seen, flag)) for seen in surfaces for flag in LIGHT_RAYS]
+    for seen, flag, _ in before:
+        setattr(seen, flag, False)
+    try:
+        yield
+    finally:
+        for seen, flag, value in before:
+            setattr(seen, flag, value)
+
+
+def _glows(seen: Any) -> bool:
+    materials = (slot.material for slot in seen.material_slots)
+    return any(read_material(material, ExportReport(), Surroundings()).emits() for material in materials)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PanelRequest(Request):
+    """What the panel asks for; `scene` is its copy of the file."""
+
+    scene_name: str
+    view_layer: str
+    use_scripts: bool  # of the file
+    images: dict[str, str] = field(default_factory=dict)  # see other_blender.save_unsaved_images
+
+
+class PanelWorker(Worker):
+    """A frame as F12 would render it; the scene is a copy of the file."""
+
+    _request: PanelRequest
+
+    def _open(self) -> Any:
+        request = self._request
+        open_blend(Path(request.scene), use_scripts=request.use_scripts)
+        load_unsaved_images(request.images, self._folder)
+        scene = bpy.context.window.scene = bpy.data.scenes[request.scene_name]
+        bpy.context.window.view_layer = scene.view_layers[request.view_layer]
+        for layer in scene.view_layers:
+            layer.use = layer.name == request.view_layer
+        return scene
+
+    def _set_up(self) -> None:
+        super()._set_up()
+        self._scene.render.use_crop_to_border = True
+        if self._request.denoise:
+            use_denoiser(self._scene.cycles)  # its absence is said before anything is rendered
+
+    def _halves(self, figures: dict[str, Any], time_of: SampleTime) -> list[Image]:
+        """The reference, or two pictures that take as long as shlight's or longer and tell Cycles' noise."""
+        if self._request.reference_seconds > 0:
+            return super()._halves(figures, time_of)
+        same = figures["cycles_same_time"]["samples"]
+        samples = max(same, min(ENOUGH_FOR_NOISE, time_of.samples(NOISE_SECONDS)))
+        is_half = samples == same and not self._request.denoise
+        halves = [self.pictures["cycles_same_time"]] if is_half else []
+        seeds = SEEDS_OF_HALVES[len(halves) :]
+        self._channel.stage("Cycles' noise", len(seeds) * time_of.seconds(samples))
+        for seed in seeds:
+            self._render_cycles(samples, seed)
+            halves.append(self._picture())
+        return halves
+
+    def _measure(self, figures: dict[str, Any], halves: list[Image]) -> None:
+        shlight, against = self.pictures["shlight"], self.pictures["cycles_same_time"]
+        if "reference" in figures:
+            super()._measure(figures, halves)
+            against = self.pictures["reference"]
+        else:
+            figures["rel_mse_of_both"] = metrics.rel_mse(shlight, against)
+        self._leave("difference", metrics.relative_difference(shlight, against).astype(np.float32))
+        figures["differences"] = self._places(shlight, halves)
+
+    def _places(self, shlight: Image, halves: list[Image]) -> list[dict[str, Any]]:
+        """The largest differences, one for each thing that is seen there."""
+        layer = bpy.context.window.view_layer
+        show_what_is_rendered(layer)
+        finder = Finder(self._scene, layer)
+        found: dict[str, dict[str, Any]] = {}
+        for difference in largest_differences(shlight[::-1], (halves[0][::-1], halves[1][::-1])):
+            seen = finder.seen_at(difference.x, difference.y)
+            place = {"x": difference.x, "y": difference.y, "difference": difference.value}
+            found.setdefault(seen.place, place | seen.to_data(record.last.report))
+        return list(found.values())[:MOST_MARKERS]
+
+
+def main(arguments: list[str]) -> None:
+    """Serves the request of a folder."""
+    serve(
+        lambda given, folder, channel: PanelWorker(PanelRequest(**given), folder, channel).figures(),
+        arguments,
+    )

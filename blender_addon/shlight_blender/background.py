@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders whose pictures are handed out as they are, and Cycles as a reference: nothing trades truth for calm."""
+"""What Blenders without a window do: open a scene, render it as it is, and hand out the picture.
+
+As a reference nothing in Cycles trades truth for calm.
+"""
 
 from __future__ import annotations
 
+import runpy
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +16,66 @@ import bpy
 import numpy as np
 import numpy.typing as npt
 
+from . import register as register_addon
 from .compat import set_sample_range
+from .names import name_of
+from .serving import SceneError
 
 Bounces = tuple[int, int, int]  # at most in all, on glossy surfaces, and through surfaces
+FEW_PIXELS = 16
+
+
+def open_scene(path: Path) -> Any:
+    """Opens a Blender file, or runs the function build_scene() of a Python script, and returns the scene.
+
+    The add-on is registered before, since a script may choose the engine and set its properties.
+    """
+    register_addon()
+    scene = _build(path) if path.suffix == ".py" else open_blend(path)
+    if scene is None:
+        raise SceneError("there is no scene in it")
+    if scene.camera is None:
+        raise SceneError(f"scene '{name_of(scene)}' has no camera")
+    return scene
+
+
+def _build(script: Path) -> Any:
+    try:
+        names = runpy.run_path(str(script))
+        if "build_scene" not in names:
+            raise SceneError("there is no function build_scene() in it")
+        return names["build_scene"]()
+    except (Exception, SystemExit) as error:
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError(f"{type(error).__name__}: {' '.join(str(error).split())}") from error
+
+
+def open_blend(path: Path, *, use_scripts: bool = False) -> Any:
+    """Opens a Blender file and returns its scene."""
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=use_scripts)
+    except RuntimeError as error:
+        raise SceneError(_reason(error)) from error
+    return bpy.context.scene
+
+
+def _reason(error: RuntimeError) -> str:
+    """Blender's own words without the file's name, which Blender puts before them, in quotation marks."""
+    line = str(error).strip().splitlines()[0]
+    words = line.removeprefix("Error: ").split('" failed: ')[-1].split("': ")[-1]
+    return f"Blender cannot read it ({words.split(' in file ')[0]})"
+
+
+@contextmanager
+def few_pixels(render: Any, longer_side: int = FEW_PIXELS) -> Iterator[None]:
+    """Meanwhile renders are of this many pixels on the longer side."""
+    size = render.resolution_x, render.resolution_y
+    render.resolution_x, render.resolution_y = (max(1, longer_side * side // max(size)) for side in size)
+    try:
+        yield
+    finally:
+        render.resolution_x, render.resolution_y = size
 
 
 def use_cycles(

@@ -1,29 +1,37 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""How a command has a worker render, follows its messages, and ends it in every case."""
+# SPDX-License-Identifier: MIT
+"""What a command asks of a worker, and how it follows its messages and ends it in every case."""
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from shlight.commands import CommandError
+from shlight_blender.compare.reference import Request
+from shlight_blender.worker_process import Stage, WorkerError, WorkerProcess
 
-from ..worker_process import Stage, WorkerError, WorkerProcess
-from .request import Request
 
+@dataclass(frozen=True, kw_only=True)
+class SceneRequest(Request):
+    """What the worker of a command line renders; None keeps the scene's value."""
 
-def check_blender() -> None:
-    """Raises CommandError where a worker would find no Blender."""
-    if importlib.util.find_spec("bpy") is None:
-        raise CommandError("the Python module bpy is missing: pip install 'shlight[blender]'", 1)
+    lights: list[str] | None = None  # names of the lamps that shine
+    size: tuple[int, int] | None = None
+    frame: int | None = None
+    threads: int = 0  # 0: all
+    order: str | None = None
+    tolerance: float | None = None
+    pixel_samples: int | None = None
+    shadow_rays: int | None = None  # 0: no shadows
+    max_bounces: int | None = None  # of both
 
 
 def run_worker(
-    module: str, request: Request, folder: Path, tick: Callable[[Stage, dict[str, Any]], None]
+    module: str, request: SceneRequest, folder: Path, tick: Callable[[Stage, dict[str, Any]], None]
 ) -> dict[str, Any]:
     """Has the worker `module` render into `folder` and returns its figures; CommandError with its reason if it fails.
 

@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a picture differs most from what two noisy pictures of the same thing agree on."""
+"""What is measured of the pictures of a comparison, and where they differ most."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from shlight import metrics
 
+Image = npt.NDArray[np.float32]
+Values = npt.NDArray[np.float64]
+
+FACTOR = 3.0  # standard errors
 SMOOTHED_SHARE = 1 / 150  # of the longer side: radius over which differences are averaged twice
 LEAST_DIFFERENCE = 0.01  # relative; less is hardly seen
 LEAST_ERRORS = 6.0  # standard errors: of all places of a picture, none of noise alone is so far off
@@ -17,8 +23,29 @@ EDGE_PIXELS = 1.0  # by which an edge may be off, as it is where pixels have few
 APART = 1 / 10  # of the longer side: nearer places count as one
 MOST = 32
 
-Image = npt.NDArray[np.float32]
-Values = npt.NDArray[np.float64]
+
+def add_measurements(figures: dict[str, Any], pictures: Mapping[str, Image], halves: tuple[Image, Image]) -> Image:
+    """Adds the errors of all pictures and of the reference to their figures; returns the reference."""
+    reference: Image = (halves[0] + halves[1]) / 2
+    error = metrics.standard_error(*halves)
+    figures["reference"]["noise_rel_mse"] = metrics.reference_rel_mse(*halves)
+    for name, image in pictures.items():
+        rel_mse, its_error = metrics.rel_mse_without_noise(image, *halves)
+        figures[name] |= {
+            "rel_mse": rel_mse,
+            "rel_mse_standard_error": its_error,
+            "rel_mse_measured": metrics.rel_mse(image, reference),
+            "mean_ratio": metrics.mean_ratio(image, reference),
+            "largest_difference": float(np.abs(metrics.relative_difference(image, reference)).max()),
+            "within_3_standard_errors": metrics.share_within(image, reference, error, factor=FACTOR),
+        }
+    return reference
+
+
+def error_text(measured: dict[str, Any]) -> str:
+    """relMSE without the reference's noise; where that noise hides it, what it is at most (two standard errors)."""
+    value, error = measured["rel_mse"], measured["rel_mse_standard_error"]
+    return f"{value:.1e} ± {error:.0e}" if value > 2 * error else f"≤ {max(value, 0.0) + 2 * error:.1e}"
 
 
 @dataclass(frozen=True)

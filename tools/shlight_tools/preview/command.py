@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""`shlight preview`: checks the request, has the worker render, measures, and puts the results in place."""
+# SPDX-License-Identifier: MIT
+"""`./dev preview`: checks the request, has the worker render, measures, and puts the results in place."""
 
 from __future__ import annotations
 
@@ -12,16 +12,15 @@ import numpy as np
 
 from shlight import images
 from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
+from shlight_blender.worker_process import Stage, check_blender
 
-from ..compare.pictures import common_exposure
-from ..compare.supervision import check_blender, run_worker
-from ..worker_process import Stage
 from .figures import add_circumstances, table
 from .options import Options, parse
-from .picture import comparison
+from .picture import common_exposure, comparison
 from .progress import Progress
+from .supervision import run_worker
 
-WORKER = "shlight_blender.compare.worker"
+WORKER = "shlight_tools.preview.worker"
 PICTURES = ("shlight", "cycles_same_time", "reference")
 FIRST_RESULTS = ("shlight.exr", "shlight.png")
 RESULTS = (*FIRST_RESULTS, "cycles_same_time.exr", "reference.exr", "preview.png", "figures.json")
@@ -30,7 +29,7 @@ RESULTS = (*FIRST_RESULTS, "cycles_same_time.exr", "reference.exr", "preview.png
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; its exit code: 2 for a request that cannot be met, 1 for a failure on the way."""
     arguments = sys.argv[1:] if argv is None else argv
-    return run_command("shlight preview", lambda: _work(arguments), when_interrupted="nothing was written")
+    return run_command("./dev preview", lambda: _work(arguments), when_interrupted="nothing was written")
 
 
 def _work(arguments: list[str]) -> None:

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """The comparison as one picture: shlight, Cycles in the same time, the reference, and where shlight differs from it."""
 
 from __future__ import annotations
@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from shlight import images, metrics
-
-from ..compare.measurements import error_text
-from ..compare.pictures import PALETTE, common_exposure, difference_limit, light_name
+from shlight_blender.compare.measure import error_text
+from shlight_blender.compare.pictures import PALETTE, difference_limit, light_name
 
 Image = npt.NDArray[np.float32]
 
@@ -20,6 +19,13 @@ Image = npt.NDArray[np.float32]
 LEAST_PANEL_WIDTH, MOST_PANEL_WIDTH = 400, 960
 MARGIN, CAPTION, BAR = 12, 44, 46
 DPI = 100
+WHITE_AT = 0.8  # linear value to which the brightest parts are brought
+
+
+def common_exposure(reference: npt.NDArray[np.float32]) -> float:
+    """Stops by which all pictures are brightened: few of the reference's pixels are then brighter than WHITE_AT."""
+    bright = float(np.percentile(reference[..., :3].max(axis=-1), 95))
+    return math.log2(WHITE_AT / bright) if bright > 0 else 0.0
 
 
 def comparison(

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """Opening the file of a survey, and the camera and lamps for one that has none."""
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import Any
 import bpy
 from mathutils import Matrix, Vector
 
-from ..compare.scene import open_blend
-from ..serving import SceneError
+from shlight_blender.background import open_blend
+from shlight_blender.serving import SceneError
 
 VIEW = Vector((1.0, -1.3, 0.8)).normalized()  # from what is seen to the camera
 ROOM = 1.08  # times the distance at which everything just fits

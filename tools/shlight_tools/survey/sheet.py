@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """Pictures of a survey: the strip of one file, and the contact sheet of all."""
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from shlight import images, metrics
+from shlight_blender.compare.pictures import PALETTE, light_name
 
-from ..compare.pictures import PALETTE, common_exposure, light_name
+from ..preview.picture import common_exposure
 from .records import Record, badness, is_measured
 
 Pixels = npt.NDArray[np.uint8]

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """All figures of a preview: measured from its pictures, and shown as a table."""
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..compare.measurements import error_text
-from ..compare.pictures import light_name
+from shlight_blender.compare.measure import error_text
+from shlight_blender.compare.pictures import light_name
+
 from .options import Options
 
 

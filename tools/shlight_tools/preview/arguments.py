@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """The arguments of command lines that say what a scene is rendered with."""
 
 from __future__ import annotations

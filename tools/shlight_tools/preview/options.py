@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line of `shlight preview`."""
+# SPDX-License-Identifier: MIT
+"""The command line of `./dev preview`."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from pathlib import Path
 
 from shlight.commands import Parser
 
-from ..compare.arguments import order, seconds, size, tolerance, whole
-from ..compare.request import Request
+from .arguments import order, seconds, size, tolerance, whole
+from .supervision import SceneRequest
 
 DEFAULT_SCENE = "example_scene"
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 
 
 @dataclass(frozen=True)
 class Options:
     """A preview: what is rendered, and the folder of the results."""
 
-    request: Request
+    request: SceneRequest
     scene: str  # as it was given: a Blender file, a script with build_scene(), or the name of an example
     out: Path
 
@@ -33,26 +34,19 @@ def parse(argv: list[str]) -> Options:
     """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
     values = vars(_parser().parse_args(argv))
     scene, out = values.pop("scene"), values.pop("out")
-    request = Request(scene=str(_scene_file(scene)), **values)
+    request = SceneRequest(scene=str(_scene_file(scene)), **values)
     return Options(request, scene, Path(out or Path("out") / "preview" / Path(scene).stem))
 
 
 def _scene_file(given: str) -> Path:
     """The file of the scene: what was given unless that is no file but the name of an example."""
-    example = _examples() / f"{given}.py"
+    example = EXAMPLES / f"{given}.py"
     return example if not Path(given).is_file() and given.isidentifier() and example.is_file() else Path(given)
-
-
-def _examples() -> Path:
-    """The folder examples/ of the source tree, or the copy of it that is installed with the package."""
-    here = Path(__file__).resolve()
-    folders = (here.parents[3] / "examples", here.parents[1] / "examples")
-    return next(folder for folder in folders if (folder / f"{DEFAULT_SCENE}.py").is_file())
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(
-        prog="shlight preview",
+        prog="./dev preview",
         description="Renders a scene with shlight, with Cycles in about the same time, and with Cycles at many "
         "samples as the reference; writes the pictures, a comparison and all figures. shlight's picture is in place, "
         "and named, before Cycles starts.",

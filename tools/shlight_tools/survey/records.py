@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """The record of each file: as a line of the terminal, in survey.json, and summed up."""
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line of `shlight survey`."""
+# SPDX-License-Identifier: MIT
+"""The command line of `./dev survey`."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 
 from shlight.commands import Parser
 
-from ..compare.arguments import seconds, size, whole
-from ..compare.request import Request
+from ..preview.arguments import seconds, size, whole
+from ..preview.supervision import SceneRequest
 
 NOISE = 2e-4  # relMSE of the reference's own noise at which it ends
 SUFFIXES = (".blend", ".gltf", ".glb")
@@ -29,9 +29,9 @@ class Options:
     resume: bool
     render: dict[str, Any]
 
-    def of_file(self, path: Path) -> Request:
+    def of_file(self, path: Path) -> SceneRequest:
         """The request for the worker of this file."""
-        return Request(scene=str(path), noise=NOISE, **self.render)
+        return SceneRequest(scene=str(path), noise=NOISE, **self.render)
 
 
 def parse(argv: list[str]) -> Options:
@@ -46,7 +46,7 @@ def parse(argv: list[str]) -> Options:
 
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(
-        prog="shlight survey",
+        prog="./dev survey",
         description="Renders every Blender and glTF file of a folder with shlight and with Cycles, "
         "and says of each how far the two differ. A file without camera or light gets one.",
     )

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """Which kinds of light a scene uses that go through things: transmission, volume and subsurface."""
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from typing import Any
 
 import bpy
 
-from ..compat import slot_materials, uses_nodes
-from ..export.nodes import all_nodes
+from shlight_blender.compat import slot_materials, uses_nodes
+from shlight_blender.export.nodes import all_nodes
 
 FEATURES = ("transmission", "volume", "subsurface")
 NODES = {

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """Progress of a worker on standard output: a bar that moves in a terminal, lines for each stage elsewhere."""
 
 from __future__ import annotations
@@ -6,8 +6,7 @@ from __future__ import annotations
 from typing import TextIO
 
 from shlight import progress
-
-from ..worker_process import Stage
+from shlight_blender.worker_process import Stage
 
 
 class Progress:

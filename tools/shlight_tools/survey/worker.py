@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: MIT
 """The worker of one file of a survey. It makes no picture of shlight's time, and says what it has added to the scene.
 
 Known figures beside those of every worker: "versions", "added" and "features".
@@ -13,10 +13,12 @@ from typing import Any
 
 import bpy
 
-from ..compare.scene import few_pixels
-from ..compare.timing import SampleTime
-from ..compare.worker import SEED_SAME_TIME, Worker, serve_with
-from ..serving import SceneError
+from shlight_blender.background import few_pixels
+from shlight_blender.compare.reference import SampleTime
+from shlight_blender.compare.render import SEED_SAME_TIME
+from shlight_blender.serving import SceneError
+
+from ..preview.worker import SceneWorker, serve_with
 from .features import features_of
 from .staging import add_camera, add_lamps, open_file
 
@@ -24,7 +26,7 @@ PROBE_PIXELS, PROBE_SAMPLES = 64, 4  # on the longer side; of each pixel
 BLACK = 1e-5  # a picture whose every pixel is darker
 
 
-class SurveyWorker(Worker):
+class SurveyWorker(SceneWorker):
     """One file."""
 
     REFUSES_DARK = False
