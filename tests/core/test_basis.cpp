@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "error_message.h"
 #include "error_record.h"
 #include "quad_truth.h"
 #include "random_input.h"
@@ -106,22 +105,6 @@ TEST(Basis, EvaluatesExpansions) {
         }
         EXPECT_NEAR(values[i], sum, 1e-13);
     }
-}
-
-TEST(Basis, BadArgumentsAreNamed) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const double inf = std::numeric_limits<double>::infinity();
-    const auto message = [](const Vec3d& direction, int order, std::size_t room) {
-        std::vector<double> values(room);
-        return testing::error_message([&] { sh_basis<double>(std::span(&direction, 1), order, values); });
-    };
-    for (const Vec3d& direction : {Vec3d(0), Vec3d(nan, 0, 1), Vec3d(0, inf, 1)}) {
-        EXPECT_EQ(message(direction, 4, 16).rfind("directions", 0), 0U);
-    }
-    for (const int order : {-1, 0, 65}) {
-        EXPECT_EQ(message({0, 0, 1}, order, 65 * 65).rfind("order", 0), 0U) << order;
-    }
-    EXPECT_NE(message({0, 0, 1}, 4, 15), "");
 }
 
 }  // namespace

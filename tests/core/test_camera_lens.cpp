@@ -241,28 +241,5 @@ TEST(CameraLens, FourCoordinatesFillTheirCube) {
     EXPECT_GE(glm::distance(sobol_beyond(0, 1), sobol_beyond(0, 77)), 1e-3);
 }
 
-TEST(CameraLens, BadLensesAreTurnedDown) {
-    const auto rejects = [](const Aperture& aperture) {
-        EXPECT_THROW(Camera(glm::dmat4(1), 1, aperture), std::invalid_argument);
-    };
-    rejects({.size = -1});
-    rejects({.size = std::numeric_limits<double>::quiet_NaN()});
-    rejects({.size = 1, .focus_distance = 0});
-    rejects({.size = 1, .focus_distance = 1e-11});
-    rejects({.blades = -1});
-    rejects({.rotation = std::numeric_limits<double>::infinity()});
-    rejects({.ratio = 0});
-    rejects({.size = 1, .ratio = 1e-11});
-    const auto rejects_panorama = [](const Panorama& panorama) {
-        EXPECT_THROW(Camera(glm::dmat4(1), panorama), std::invalid_argument);
-    };
-    rejects_panorama(FisheyeEquidistant{0});
-    rejects_panorama(FisheyeEquisolid{.lens = 0});
-    rejects_panorama(FisheyeEquisolid{.sensor = {0, 1}});
-    rejects_panorama(Equirectangular{1, 1, 0, 1});
-    rejects_panorama(CentralCylindrical{0, 1, 1, 1});
-    rejects_panorama(FisheyeLensPolynomial{{0, std::numeric_limits<double>::infinity(), 0, 0, 0}});
-}
-
 }  // namespace
 }  // namespace shlight

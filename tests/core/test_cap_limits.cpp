@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Caps where formulas break: nothing kept, everything kept, contact, straight above, absurd sizes, and bad input.
+// Caps where formulas break: nothing kept, everything kept, contact, straight above, and absurd sizes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "random_input.h"
@@ -189,50 +187,14 @@ TYPED_TEST(CapLimits, SmallCapsTendToTheBasis) {
     }
 }
 
-std::string rejection(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const std::invalid_argument& error) {
-        return error.what();
-    }
-    return "accepted";
-}
-
-TYPED_TEST(CapLimits, RejectsBadInput) {
+TYPED_TEST(CapLimits, SizesOfArraysAgree) {
     using T = TypeParam;
-    const T nan = std::numeric_limits<T>::quiet_NaN();
-    const T inf = std::numeric_limits<T>::infinity();
-    const auto names = [](const std::string& argument, const std::function<void()>& call) {
-        EXPECT_NE(rejection(call).find(argument), std::string::npos) << argument << ": " << rejection(call);
-    };
-    names("centers", [&] { sphere<T>({nan, 0, 1}, T(0.5), 4); });
-    names("centers", [&] { sphere<T>({0, 0, inf}, T(0.5), 4); });
-    for (const T radius : {T(0), T(-1), nan, inf}) {
-        names("radii", [&] { sphere<T>({0, 0, 1}, radius, 4); });
-    }
-    names("inside", [&] { sphere<T>({0, 0, 1}, T(1.01), 4); });
-    names("inside", [&] { sphere<T>({0, 0, 0}, T(1), 4); });
-    for (const int order : {-3, 0, 65}) {
-        names("order", [&] {
-            const Vec3<T> center(0, 0, 1);
-            const T radius = T(0.5);
-            std::vector<T> values(65 * 65);
-            sphere_coefficients<T>(std::span(&center, 1), std::span(&radius, 1), order, true, values);
-        });
-    }
-    names("axes", [&] { cap<T>({0, 0, 0}, T(0.5), 4); });
-    names("axes", [&] { cap<T>({nan, 0, 0}, T(0.5), 4); });
-    for (const T half_angle : {T(0), T(-1), T(3.2), nan, inf}) {
-        names("half_angles", [&] { cap<T>({0, 0, 1}, half_angle, 4); });
-    }
     const std::vector<Vec3<T>> centers(2, Vec3<T>(0, 0, 1));
     const std::vector<T> radii(2, T(0.5));
     std::vector<T> values(2 * 16);
-    EXPECT_NE(
-        rejection([&] { sphere_coefficients<T>(centers, std::span(radii).first(1), 4, true, std::span(values)); }),
-        "accepted");
-    EXPECT_NE(rejection([&] { sphere_coefficients<T>(centers, radii, 4, true, std::span(values).first(31)); }),
-              "accepted");
+    EXPECT_THROW(sphere_coefficients<T>(centers, std::span(radii).first(1), 4, true, std::span(values)),
+                 std::invalid_argument);
+    EXPECT_THROW(sphere_coefficients<T>(centers, radii, 4, true, std::span(values).first(31)), std::invalid_argument);
 }
 
 }  // namespace

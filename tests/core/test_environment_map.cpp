@@ -12,7 +12,6 @@
 
 #include "environment/environment_map.h"
 #include "environment/map_lookup.h"
-#include "error_message.h"
 #include "lobes/lobe_moments.h"
 #include "lobes/sh_projection.h"
 #include "lobes/turned_lobes.h"
@@ -64,28 +63,6 @@ std::vector<double> basis_at(const Vec3d& direction, int order) {
 }
 
 // --- pictures
-
-TEST(EnvironmentMap, RejectsWhatIsNoPicture) {
-    LatLong picture = random_picture(4, 2, 1);
-    picture.pixels.pop_back();
-    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance has 7 values, expected 8");
-    picture = {{}, 0, 3};
-    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance must have 1 … 2^28 pixels");
-    picture = random_picture(4, 2, 1);
-    picture.pixels[3].y = -1e-6F;
-    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance must not be negative");
-    picture.pixels[3].y = INFINITY;
-    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance contains a number that is not finite");
-    picture.pixels[3].y = 2e15F;
-    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance must not exceed 1e15");
-    for (const glm::dmat3& m : {glm::dmat3(-1), glm::dmat3(2), glm::dmat3(1, 1, 0, 0, 1, 0, 0, 0, 1)}) {
-        picture = random_picture(4, 2, 1);
-        picture.to_world = m;
-        EXPECT_EQ(error_message([&] { Environment{picture}; }), "to_world must be a rotation");
-    }
-    picture.to_world = glm::dmat3(NAN);
-    EXPECT_EQ(error_message([&] { Environment{picture}; }), "to_world contains a number that is not finite");
-}
 
 TEST(EnvironmentMap, RowsAndColumnsLieAsSaid) {
     // Columns: -x -y corner, and so on: four texels of 90° each.

@@ -216,27 +216,5 @@ TEST(Polygon, JustBelowTheHorizonIsUnseen) {
     }
 }
 
-TEST(Polygon, BadArgumentsAreNamed) {
-    const auto message = [](const Vertices& vertices, int order = 4, std::size_t room = 16) {
-        return testing::error_message([&] {
-            std::vector<double> values(room);
-            polygon_coefficients<double>(vertices, static_cast<int>(vertices.size()), order, true, std::span(values));
-        });
-    };
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const double inf = std::numeric_limits<double>::infinity();
-    const auto names = [](const std::string& text, const std::string& argument) {
-        EXPECT_NE(text.find(argument), std::string::npos) << argument << ": " << text;
-    };
-    names(message({{1, 0, 1}, {0, 1, 1}}), "vertices");
-    names(message({{1, 0, nan}, {0, 1, 1}, {0, 0, 1}}), "vertices");
-    names(message({{1, 0, 1}, {-inf, 1, 1}, {0, 0, 1}}), "vertices");
-    names(message({{1, 1, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, -1, 1.5}}), "planar");
-    for (const int order : {-1, 0, 65}) {
-        names(message({{1, 0, 1}, {0, 1, 1}, {0, 0, 2}}, order, 65 * 65), "order");
-    }
-    names(message({{1, 0, 1}, {0, 1, 1}, {0, 0, 2}}, 4, 15), "coefficients");
-}
-
 }  // namespace
 }  // namespace shlight

@@ -79,41 +79,5 @@ TEST(RenderCamera, CoverageIsTheShareOfThePixel) {
     EXPECT_EQ(image.red(0, 0), 6.0F / 16);
 }
 
-TEST(RenderCamera, BadArgumentsAreTurnedDown) {
-    const auto rejects = [](auto change, int width = 4, int height = 4) {
-        RenderSettings settings;
-        change(settings);
-        EXPECT_THROW(check_render(settings, width, height), std::invalid_argument);
-    };
-    rejects([](RenderSettings& s) { s.order = 65; });
-    rejects([](RenderSettings& s) { s.order = -1; });
-    rejects([](RenderSettings& s) { s.tolerance = 0; });
-    rejects([](RenderSettings& s) { s.tolerance = std::numeric_limits<double>::quiet_NaN(); });
-    rejects([](RenderSettings& s) { s.sampling.max_samples = 0; });
-    rejects([](RenderSettings& s) { s.sampling.min_samples = 0; });
-    rejects([](RenderSettings& s) { s.sampling.min_samples = s.sampling.max_samples + 1; });
-    rejects([](RenderSettings& s) { s.sampling.noise_threshold = -0.1; });
-    rejects([](RenderSettings& s) { s.sampling.time_limit = std::numeric_limits<double>::quiet_NaN(); });
-    rejects([](RenderSettings& s) { s.shadow_rays = -1; });
-    rejects([](RenderSettings& s) { s.max_bounces = -1; });
-    rejects([](RenderSettings& s) { s.max_bounces = 1025; });
-    rejects([](RenderSettings& s) { s.glossy_bounces = 1025; });
-    rejects([](RenderSettings& s) { s.transmission_bounces = -1; });
-    rejects([](RenderSettings& s) { s.threads = -1; });
-    rejects([](RenderSettings&) {}, 0, 4);
-    rejects([](RenderSettings&) {}, 4, -1);
-    rejects([](RenderSettings&) {}, 1 << 20, 1 << 20);
-    EXPECT_THROW(Camera(glm::dmat4(0), 1), std::invalid_argument);
-    EXPECT_THROW(Camera(glm::dmat4(1), std::numbers::pi), std::invalid_argument);
-    EXPECT_THROW(Camera(glm::dmat4(1), Window{1, 1, 0, 1}, Projection::perspective), std::invalid_argument);
-    EXPECT_THROW(Camera(glm::dmat4(1), Window{0, 1, 0, 1}, Projection::perspective, {2, 2}), std::invalid_argument);
-    Mesh flat = floor_mesh(1);
-    flat.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0})};
-    EXPECT_THROW(Scene().add_mesh(flat), std::invalid_argument);
-    Mesh torn = floor_mesh(1);
-    torn.triangles[1].x = 4;
-    EXPECT_THROW(Scene().add_mesh(torn), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace shlight

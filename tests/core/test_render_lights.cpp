@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "error_message.h"
 #include "random_input.h"
 #include "shlight/light.h"
 #include "shlight/mesh_light.h"
@@ -60,28 +59,6 @@ TEST(RenderLights, RepeatedAndCollinearVerticesDoNoHarm) {
         {{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {0, 0, 1}}, Rgb(1), false);
     EXPECT_EQ(light.vertices.size(), 5U);
     EXPECT_LE(std::abs(triangulated_area(light) - 4), 1e-12);
-}
-
-TEST(RenderLights, BadPolygonsAreTurnedDown) {
-    const auto polygon_error = [](const std::vector<Vec3d>& vertices, const Rgb& radiance = Rgb(1)) {
-        return testing::error_message([&] { make_polygon_light(vertices, radiance, false); });
-    };
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}}).find("vertices"), std::string::npos);
-    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).find("no area"), std::string::npos);
-    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}, {0, nan, 0}}).find("vertices"), std::string::npos);
-    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.3}, {0, 1, 0}}).find("planar"), std::string::npos);
-    EXPECT_NE(polygon_error({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 3, 0}}).find("crosses"), std::string::npos);
-    EXPECT_NE(
-        polygon_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, Rgb(std::numeric_limits<float>::infinity())).find("radiance"),
-        std::string::npos);
-}
-
-TEST(RenderLights, BadSpheresAreTurnedDown) {
-    EXPECT_THROW(make_sphere_light({0, 0, 0}, 0, Rgb(1), false), std::invalid_argument);
-    EXPECT_THROW(make_sphere_light({0, 0, 0}, -1, Rgb(1), false), std::invalid_argument);
-    EXPECT_THROW(make_sphere_light({0, 0, std::numeric_limits<double>::infinity()}, 1, Rgb(1), false),
-                 std::invalid_argument);
 }
 
 TEST(RenderLights, TrianglesOfAQuadrilateralAreJoined) {

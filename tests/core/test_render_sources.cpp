@@ -8,7 +8,6 @@
 #include <limits>
 #include <numbers>
 
-#include "error_message.h"
 #include "quadrature.h"
 #include "render_scenes.h"
 #include "shlight/light.h"
@@ -201,23 +200,6 @@ TEST(RenderSources, ALightInItsOwnSurfaceIsNoBrightPixel) {
     // Whole hemispheres of the four that have an extent.
     const double most = kAlbedo * (2 + 2 + 2 * 3 / (pi * 1e-6));
     EXPECT_LE(image.red(4, 4), most * 1.001);
-}
-
-TEST(RenderSources, BadArgumentsAreTurnedDown) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    Scene scene;
-    EXPECT_EQ(error_message([&] { scene.add_point_light({0, nan, 0}, Rgb(1)); }).rfind("position", 0), 0U);
-    EXPECT_EQ(error_message([&] { scene.add_sun_light({0, 0, 0}, 0.1, Rgb(1)); }).rfind("direction", 0), 0U);
-    EXPECT_EQ(error_message([&] { scene.add_sun_light({0, nan, 0}, 0.1, Rgb(1)); }).rfind("direction", 0), 0U);
-    EXPECT_EQ(error_message([&] { scene.add_sun_light({0, 0, 1}, -0.1, Rgb(1)); }).rfind("angle", 0), 0U);
-    EXPECT_EQ(error_message([&] { scene.add_sun_light({0, 0, 1}, 3.2, Rgb(1)); }).rfind("angle", 0), 0U);
-    EXPECT_EQ(error_message([&] { scene.add_sun_light({0, 0, 1}, 3.1, Rgb(1), true); }).rfind("angle", 0), 0U);
-    EXPECT_EQ(error_message([&] { make_spot_profile(lamp_axes({0, 0, 1}), 0, 0); }).rfind("spot_angle", 0), 0U);
-    EXPECT_EQ(error_message([&] { make_spot_profile(lamp_axes({0, 0, 1}), 1, 1.1); }).rfind("blend", 0), 0U);
-    EXPECT_EQ(error_message([&] { make_spot_profile(glm::dmat3(0), 1, 1); }).rfind("direction", 0), 0U);
-    EXPECT_EQ(error_message([&] { make_spread_profile({0, 0, 1}, 0); }).rfind("spread", 0), 0U);
-    const SpotProfile spot = make_spot_profile(lamp_axes({0, 0, 1}), 1, 0);
-    EXPECT_EQ(error_message([&] { scene.add_spot_light({0, 0, 0}, spot, Rgb(1), -1); }).rfind("radius", 0), 0U);
 }
 
 }  // namespace

@@ -86,30 +86,3 @@ def test_threads_change_no_bit(threads: int) -> None:
     assert shlight.sh_basis(d, 9, threads=threads).tobytes() == basis.tobytes()
     values = shlight.evaluate(basis, d)
     assert shlight.evaluate(basis, d, threads=threads).tobytes() == values.tobytes()
-
-
-@pytest.mark.parametrize(
-    "d",
-    [[0, 0, 0], [math.nan, 0, 1], [0, math.inf, 1], [1, 2], 1.0, [[1, 2, 3, 4]], "up", [1j, 0, 1], [[1, 2, 3], [4]]],
-)
-def test_bad_directions_are_named(d: object) -> None:
-    with pytest.raises(ValueError, match="directions"):
-        shlight.sh_basis(d, 4)
-    with pytest.raises(ValueError, match="directions"):
-        shlight.evaluate(np.zeros(16), d)
-
-
-def test_other_bad_arguments_are_named() -> None:
-    for order in (0, -1, 65, 2.5, "8", None):
-        with pytest.raises(ValueError, match="order"):
-            shlight.sh_basis([0, 0, 1], order)
-    with pytest.raises(ValueError, match="coefficients"):
-        shlight.evaluate(np.zeros(15), [0, 0, 1])
-    with pytest.raises(ValueError, match="coefficients"):
-        shlight.evaluate(np.zeros(65 * 65), [0, 0, 1])
-    with pytest.raises(ValueError, match=r"coefficients.*directions"):
-        shlight.evaluate(np.zeros((2, 16)), np.ones((3, 3)))
-    with pytest.raises(ValueError, match="dtype"):
-        shlight.sh_basis([0, 0, 1], 4, dtype=np.float16)
-    with pytest.raises(ValueError, match="threads"):
-        shlight.sh_basis([0, 0, 1], 4, threads=-1)

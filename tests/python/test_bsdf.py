@@ -90,16 +90,6 @@ def test_contract_broadcasts_over_colors() -> None:
     np.testing.assert_allclose(radiance, np.einsum("ak,ack->ac", light, bsdf), rtol=1e-5)
 
 
-@pytest.mark.parametrize("bad", [-0.1, math.nan, math.inf, 1e11, [0.1, 0.2], [0.1, 0.2, -0.3]])
-def test_bad_colors_are_named(bad: object) -> None:
-    with pytest.raises(ValueError, match="albedo"):
-        Bsdf.lambert(bad)
-    with pytest.raises(ValueError, match="f0"):
-        Bsdf.ggx(0.5, bad)
-    with pytest.raises(ValueError, match="factor"):
-        Bsdf.lambert(0.5) * bad
-
-
 def test_products_of_colors_stay_in_range() -> None:
     with pytest.raises(ValueError, match="factor"):
         1e6 * (1e6 * Bsdf.lambert(1))
@@ -108,34 +98,3 @@ def test_products_of_colors_stay_in_range() -> None:
     assert np.isfinite(sharp.coefficients([0, 0.5, 1], 64)).all()
     for order in ("auto", 8):
         assert np.isfinite(shlight.shade_spheres([[-0.6, 0, 0.8], [0, 0, -2]], 0.1, sharp, [0.8, 0], order=order)).all()
-
-
-def test_other_bad_arguments_are_named() -> None:
-    for roughness in (-0.5, 1.5, math.nan):
-        with pytest.raises(ValueError, match="roughness"):
-            Bsdf.ggx(roughness, 0.5)
-    for ior in (0, 1, 0.5, math.nan, math.inf):
-        with pytest.raises(ValueError, match="ior"):
-            Bsdf.ggx(0.5, 0.5, ior=ior)
-    bsdf = Bsdf.lambert(0.5)
-    for cosine in (-0.1, 1.1, math.nan):
-        with pytest.raises(ValueError, match="cos_theta_o"):
-            bsdf.coefficients(cosine, 4)
-        with pytest.raises(ValueError, match="cos_theta_o"):
-            bsdf.residual(cosine, 4)
-    for order in (0, 65, -1):
-        with pytest.raises(ValueError, match="order"):
-            bsdf.coefficients(0.5, order)
-        with pytest.raises(ValueError, match="order"):
-            bsdf.residual(0.5, order)
-    for direction in ([0, 0, 0], [math.nan, 0, 1], [1, 2]):
-        with pytest.raises(ValueError, match="wi"):
-            bsdf.evaluate(direction, [0, 0, 1])
-        with pytest.raises(ValueError, match="wo"):
-            bsdf.evaluate([0, 0, 1], direction)
-    with pytest.raises(ValueError, match=r"^material.*light"):
-        shlight.contract(np.zeros(16), np.zeros(25))
-    with pytest.raises(ValueError, match=r"^light"):
-        shlight.contract(np.zeros(15), np.zeros(15))
-    with pytest.raises(ValueError, match=r"^light.*material"):
-        shlight.contract(np.zeros((2, 16)), np.zeros((3, 16)))

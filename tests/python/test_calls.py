@@ -34,6 +34,9 @@ WRONG_ROWS: dict[str, Callable[[], Any]] = {
     "radii must": lambda: shlight.shade_spheres(CENTERS, -1.0, MATTE, 0.5),
     "half_angles[1999]": lambda: shlight.cap_coefficients(CENTERS, one_wrong(9, 1999), 3, method="quadrature"),
     "directions[7]": lambda: shlight.sh_basis(CENTERS * (np.arange(2000) != 7)[:, None], 3),
+    "points[1] contains": lambda: lit_floor().irradiance([[0, 0, 0], [np.nan, 0, 0]], [0, 0, 1]),
+    "normals[1] has length 0": lambda: lit_floor().light_coefficients([[0, 0, 1]] * 2, [[0, 0, 1], [0, 0, 0]], 3),
+    "directions[2] has length 0": lambda: lit_floor().radiance([[0, 0, 1]] * 3, [[0, 0, 1], [0, 0, 1], [0, 0, 0]]),
     "light[4]": lambda: shlight.contract(np.where(np.arange(6)[:, None] == 4, np.nan, np.ones(9)), np.ones(9)),
 }
 
@@ -126,10 +129,10 @@ def _within_alarm(call: Callable[[], Any]) -> None:
 
 @pytest.mark.parametrize("call", LONG)
 def test_an_interrupt_ends_a_long_call(alarm: None, call: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(KeyboardInterrupt):
         _within_alarm(LONG[call])
-    assert time.perf_counter() - start <= 1.0
+    assert time.process_time() - start <= 1.0
     assert np.geterr()["divide"] == "warn"  # as numpy has it
 
 

@@ -60,16 +60,3 @@ def test_it_can_be_cancelled(noisy: dict[str, NDArray[np.float32]]) -> None:
 
     with pytest.raises(KeyError, match="the caller's own"):
         shlight.denoise(noisy["combined"], progress=fails)
-
-
-def test_errors_name_the_argument() -> None:
-    image = np.ones((4, 5, 4), np.float32)
-    for wrong, arguments in {
-        "image": {"image": image[..., :2]},
-        "albedo": {"albedo": image[:, :4, :3]},
-        "normal": {"normal": image[..., :3]},
-        "quality": {"quality": "best"},
-        "threads": {"threads": -1},
-    }.items():
-        with pytest.raises(ValueError, match=wrong):
-            shlight.denoise(**({"image": image} | arguments))

@@ -104,34 +104,6 @@ def test_random_coefficients_depend_on_the_seed_only(name: str, sampling: Any) -
     assert len(np.unique(once[::3, 0] if sampling == "area" else once[::3, 1])) == 600
 
 
-@pytest.mark.parametrize(
-    ("name", "options"),
-    [
-        ("method", {"method": "best"}),
-        ("method", {"method": None}),
-        ("order", {"method": "zhou_wei", "order": 33}),
-        ("tolerance", {"tolerance": 1e-3}),
-        ("samples", {"samples": 4}),
-        ("seed", {"seed": 4}),
-        ("sampling", {"sampling": "area"}),
-        ("samples", {"method": "quadrature", "samples": 4}),
-        ("tolerance", {"method": "monte_carlo", "tolerance": 1e-3}),
-        ("tolerance", {"method": "quadrature", "tolerance": 0}),
-        ("tolerance", {"method": "quadrature", "tolerance": float("nan")}),
-        ("tolerance", {"method": "quadrature", "tolerance": "much"}),
-        ("samples", {"method": "monte_carlo", "samples": 0}),
-        ("samples", {"method": "monte_carlo", "samples": 1.5}),
-        ("seed", {"method": "monte_carlo", "seed": -1}),
-        ("seed", {"method": "monte_carlo", "seed": 2**32}),
-        ("sampling", {"method": "monte_carlo", "sampling": "bsdf"}),
-        ("sampling", {"method": "monte_carlo", "sampling": "mis"}),
-        ("sampling", {"method": "monte_carlo", "sampling": "everywhere"}),
-    ],
-)
-def test_bad_coefficient_options(name: str, options: dict[str, Any]) -> None:
-    expect_value_error(name, lambda: caps(**options))
-
-
 def test_bad_lights() -> None:
     for name in ("quadrature", "monte_carlo"):
         options: dict[str, Any] = {"method": name}
@@ -214,26 +186,6 @@ def test_random_shading_is_right_and_depends_on_the_seed_only(sampling: Any) -> 
     )
 
 
-@pytest.mark.parametrize(
-    ("name", "options"),
-    [
-        ("method", {"method": "best"}),
-        ("samples", {"samples": 4}),
-        ("seed", {"seed": 4}),
-        ("sampling", {"sampling": "mis"}),
-        ("order", {"method": "plain_harmonics"}),
-        ("order", {"method": "quadrature", "order": 4}),
-        ("samples", {"method": "quadrature", "samples": 4}),
-        ("seed", {"method": "cubature", "seed": 4}),
-        ("samples", {"method": "cubature", "samples": 0}),
-        ("sampling", {"method": "monte_carlo", "sampling": "everywhere"}),
-        ("bsdf", {"method": "quadrature", "bsdf": Bsdf.ggx(0, 1)}),
-    ],
-)
-def test_bad_shading_options(name: str, options: dict[str, Any]) -> None:
-    expect_value_error(name, lambda: shaded(**options))
-
-
 # --- pictures -----------------------------------------------------------------------------------------------------
 
 
@@ -255,23 +207,3 @@ def test_pictures_agree_with_the_library_and_their_noise_falls_with_the_root_of_
     assert (standard_error[:3] <= 0.01 * totals.mean(axis=0)[:3]).all()
     assert noise[0] / noise[1] == pytest.approx(4, rel=0.2)
     assert (runs[0] != runs[1]).any()
-
-
-@pytest.mark.parametrize(
-    ("name", "options"),
-    [
-        ("samples", {"samples": 0}),
-        ("samples", {"samples": 2**20 + 1}),
-        ("samples", {"samples": 2**70 - 2**69}),
-        ("seed", {"seed": -1}),
-        ("seed", {"seed": 0.5}),
-        ("threads", {"threads": -1}),
-        ("width", {"width": 0}),
-        ("height", {"height": 0}),
-        ("progress", {"progress": 3}),
-        ("scene", {"scene": shlight.Scene()}),
-    ],
-)
-def test_bad_picture_arguments(name: str, options: dict[str, Any]) -> None:
-    given: dict[str, Any] = {"scene": lit_floor(), "width": 4, "height": 4, "samples": 4, **options}
-    expect_value_error(name, lambda: methods.render_monte_carlo(**given))

@@ -347,38 +347,3 @@ def test_passes_as_a_file_have_blenders_names(tmp_path: Path) -> None:
         np.testing.assert_array_equal(pixels[..., channels.index(f"ViewLayer.{name}")], values, err_msg=name)
     with pytest.raises(ValueError, match=r"^passes must"):
         write_layers(tmp_path / "none.exr", {})
-
-
-@pytest.mark.parametrize(
-    ("argument", "options"),
-    [
-        ("passes", {"passes": ["deep"]}),
-        ("passes", {"passes": "depth"}),
-        ("passes", {"passes": ["depth", "depth"]}),
-        ("groups", {"groups": 1}),
-        ("aovs", {"aovs": "all"}),
-        ("alpha_threshold", {"alpha_threshold": 2.0}),
-        ("mist", {"mist": (1.0, 2.0)}),
-        ("mist", {"mist": (1.0, math.inf, 2.0)}),
-        ("cryptomatte_levels", {"cryptomatte_levels": 1}),
-    ],
-)
-def test_wrong_arguments_are_named(argument: str, options: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match=f"^{argument}"):
-        shlight.render(lit_floor(), 4, 4, **options, max_bounces=0)
-
-
-@pytest.mark.parametrize(
-    ("argument", "options"),
-    [
-        ("group", {"group": 3}),
-        ("group", {"group": ""}),
-        ("object_names", {"object_names": ["a", "b"]}),
-        ("material_names", {"material_names": [1]}),
-        ("object_indices", {"object_indices": [-1]}),
-        ("object_indices", {"object_indices": 0.5}),
-    ],
-)
-def test_wrong_labels_are_named(argument: str, options: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match=f"^{argument}"):
-        shlight.Scene().add_mesh(FLOOR, FACES, **options)

@@ -181,37 +181,6 @@ def test_batches_may_be_empty(method: str) -> None:
     assert len(answer) == 0
 
 
-@pytest.mark.parametrize("method", OF_POINTS)
-@pytest.mark.parametrize(
-    ("points", "normals", "message"),
-    [
-        ([[0, 0, 0], [np.nan, 0, 0]], [0, 0, 1], r"points\[1\] contains a number that is not finite"),
-        ([[0, 0, 0]] * 2, [[0, 0, 1], [0, 0, 0]], r"normals\[1\] has length 0"),
-        ([[0, 0]], [0, 0, 1], r"points must have shape \(n, 3\)"),
-    ],
-)
-def test_wrong_points_are_named(method: str, points: Any, normals: Any, message: str) -> None:
-    with pytest.raises(ValueError, match=f"^{message}"):
-        getattr(lit_scene(), method)(points, normals, *OF_POINTS[method])
-
-
-@pytest.mark.parametrize("method", OF_RAYS)
-@pytest.mark.parametrize(
-    ("origins", "directions", "message"),
-    [
-        ([[0, 0, 0], [0, np.nan, 0]], [0, 0, 1], r"origins\[1\] contains a number that is not finite"),
-        ([[0, 0, 0]] * 3, [[0, 0, 1], [0, 0, 1], [0, 0, 0]], r"directions\[2\] has length 0"),
-        ([0, 0, 0], [0, np.inf, 0], "directions contains a number that is not finite"),
-        ([0, 2e10, 0], [0, 0, 1], "origins: a scene reaches"),
-        ([0, 0], [0, 0, 1], r"origins must have shape \(n, 3\)"),
-        ([[0, 0, 0]] * 3, [[0, 0, 1]] * 2, "directions must have as many rows as origins"),
-    ],
-)
-def test_wrong_rays_are_named(method: str, origins: Any, directions: Any, message: str) -> None:
-    with pytest.raises(ValueError, match=f"^{message}"):
-        getattr(lit_scene(), method)(origins, directions)
-
-
 LAMP = SQUARE[::-1] * 0.5 + [0.1, 0, 2]  # shines down
 WALL = np.array([[-0.6, -0.4, 1.0], [0.3, -0.4, 1.0], [0.3, 0.5, 1.2], [-0.6, 0.5, 1.2]])
 RADIANCE = np.array([3.0, 2.0, 1.0])

@@ -176,48 +176,6 @@ def test_what_was_built_is_kept_until_something_is_added() -> None:
     assert (brighter[..., :3] > image[..., :3]).all()
 
 
-def expect_value_error(name: str, call: Callable[[], Any]) -> None:
-    with pytest.raises(ValueError, match=name):
-        call()
-
-
-NAN = float("nan")
-RENDER_ERRORS: list[tuple[str, dict[str, Any]]] = [
-    ("width", {"width": 0}),
-    ("width", {"width": 10**12}),
-    ("height", {"height": -1}),
-    ("height", {"width": 10**5, "height": 10**5}),
-    ("order", {"order": 0}),
-    ("order", {"order": 65}),
-    ("order", {"order": 10**30}),
-    ("order", {"order": "low"}),
-    ("order", {"order": None}),
-    ("order", {"order": 2.5}),
-    ("tolerance", {"tolerance": 0}),
-    ("tolerance", {"tolerance": NAN}),
-    ("pixel_samples", {"pixel_samples": 0}),
-    ("max_samples", {"max_samples": 2**21}),
-    ("min_samples", {"min_samples": 8, "max_samples": 4}),
-    ("min_samples", {"min_samples": 8, "pixel_samples": 4}),
-    ("noise_threshold", {"noise_threshold": -1}),
-    ("noise_threshold", {"noise_threshold": NAN}),
-    ("time_limit", {"time_limit": 0}),
-    ("time_limit", {"time_limit": NAN}),
-    ("pixel_filter", {"pixel_filter": "tent"}),
-    ("filter_width", {"filter_width": 0}),
-    ("on_update", {"on_update": 5}),
-    ("shadow_rays", {"shadow_rays": -1}),
-    ("shadow_rays", {"shadow_rays": 10**10}),
-    ("max_bounces", {"max_bounces": -1}),
-    ("max_bounces", {"max_bounces": 1025}),
-    ("max_bounces", {"max_bounces": 0.5}),
-    ("glossy_bounces", {"glossy_bounces": -1}),
-    ("transmission_bounces", {"transmission_bounces": 1025}),
-    ("threads", {"threads": -1}),
-    ("progress", {"progress": 5}),
-]
-
-
 def test_a_glossy_penumbra_is_that_of_plain_monte_carlo() -> None:
     """Four shadow rays of a hit say little about a lobe whose peak is half hidden."""
     scene = shlight.Scene()
@@ -232,17 +190,6 @@ def test_a_glossy_penumbra_is_that_of_plain_monte_carlo() -> None:
     expected = methods.render_monte_carlo(scene, 8, 8, samples=16384)
     # A million rays whose values vary by about their mean: 1e-3; and the renderer's tolerance of 1e-3.
     np.testing.assert_allclose(image.mean(axis=(0, 1)), expected.mean(axis=(0, 1)), rtol=5e-3)
-
-
-@pytest.mark.parametrize(("name", "change"), RENDER_ERRORS)
-def test_bad_render_arguments(name: str, change: dict[str, Any]) -> None:
-    arguments: dict[str, Any] = {"width": 4, "height": 4, "max_bounces": 0, **change}
-    scene = lit_floor()
-    expect_value_error(name, lambda: shlight.render(scene, **arguments))
-
-
-def test_a_camera_is_needed() -> None:
-    expect_value_error("camera", lambda: shlight.render(shlight.Scene(), 4, 4, max_bounces=0))
 
 
 def test_the_picture_as_it_stands() -> None:
@@ -275,79 +222,25 @@ def test_no_time_is_left_in_the_end() -> None:
     assert max(left) > left[-1] == 0
 
 
-MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [
-    ("vertices", {"vertices": FLOOR[:, :2]}),
-    ("vertices", {"vertices": np.full_like(FLOOR, NAN)}),
-    ("vertices", {"vertices": "floor"}),
-    ("vertices", {"vertices": FLOOR.astype(complex)}),
-    ("triangles", {"triangles": [[0, 1, 4]]}),
-    ("triangles", {"triangles": [[0, 1, -1]]}),
-    ("triangles", {"triangles": [[0, 1, 2**32]]}),
-    ("triangles", {"triangles": [[0, 1]]}),
-    ("triangles", {"triangles": FACES.astype(float)}),
-    ("normals", {"normals": FLOOR[:3]}),
-    ("normals", {"normals": np.full_like(FLOOR, np.inf)}),
-    ("uvs", {"uvs": FLOOR}),
-    ("bsdf", {"bsdf": []}),
-    ("bsdf", {"bsdf": 0.8}),
-    ("bsdf", {"bsdf": [0.8]}),
-    ("emission", {"emission": 1.0}),
-    ("emission", {"emission": [1, 2, NAN]}),
-    ("bsdf", {"bsdf": [shlight.Bsdf.lambert(1)] * 2, "emission": np.ones((3, 3))}),
-    ("material_indices", {"material_indices": [0]}),
-    ("material_indices", {"material_indices": [0, 1]}),
-    ("material_indices", {"material_indices": [0, -1]}),
-    ("transforms", {"transforms": np.eye(4)}),
-    ("transforms", {"transforms": [np.diag([1, 1, 0, 1])]}),
-    ("transforms", {"transforms": [np.diag([1, 1, NAN, 1])]}),
-    ("transforms", {"transforms": [np.ones((4, 4))]}),
-]
+MESH_ERRORS: dict[str, Any] = {
+    "vertices": np.full_like(FLOOR, np.nan),
+    "triangles": [[0, 1, 4]],
+    "bsdf": [0.8],
+    "material_indices": [0, -1],
+    "transforms": [np.ones((4, 4))],
+}
 
 
-@pytest.mark.parametrize(("name", "change"), MESH_ERRORS)
-def test_bad_meshes_leave_the_scene_as_it_was(name: str, change: dict[str, Any]) -> None:
+@pytest.mark.parametrize(("name", "bad"), MESH_ERRORS.items())
+def test_bad_meshes_leave_the_scene_as_it_was(name: str, bad: Any) -> None:
     scene = lit_floor()
     before = shlight.render(scene, 4, 4, max_bounces=0)
-    arguments: dict[str, Any] = {"vertices": FLOOR + np.array([0, 0, 1]), "triangles": FACES, **change}
-    expect_value_error(name, lambda: scene.add_mesh(**arguments))
+    arguments: dict[str, Any] = {"vertices": FLOOR + np.array([0, 0, 1]), "triangles": FACES, name: bad}
+    with pytest.raises(ValueError, match=f"^{name}"):
+        scene.add_mesh(**arguments)
     after, report = shlight.render(scene, 4, 4, return_report=True, max_bounces=0)
     np.testing.assert_array_equal(after, before)
     assert report.build_seconds == 0
-
-
-def test_bad_lights_and_cameras() -> None:
-    scene = shlight.Scene()
-    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
-    expect_value_error("center", lambda: scene.add_sphere_light([0, 0], 1, [1, 1, 1]))
-    expect_value_error("center", lambda: scene.add_sphere_light([0, 0, NAN], 1, [1, 1, 1]))
-    expect_value_error("radius", lambda: scene.add_sphere_light([0, 0, 0], 0, [1, 1, 1]))
-    expect_value_error("radius", lambda: scene.add_sphere_light([0, 0, 0], NAN, [1, 1, 1]))
-    expect_value_error("radiance", lambda: scene.add_sphere_light([0, 0, 0], 1, 1.0))
-    expect_value_error("radiance", lambda: scene.add_polygon_light(square, [1, 1, np.inf]))
-    expect_value_error("vertices", lambda: scene.add_polygon_light(square[:2], [1, 1, 1]))
-    expect_value_error("vertices", lambda: scene.add_polygon_light([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [1, 1, 1]))
-    expect_value_error("planar", lambda: scene.add_polygon_light([*square[:3], [0, 1, 1]], [1, 1, 1]))
-    bow_tie = [[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 3, 0]]
-    expect_value_error("crosses", lambda: scene.add_polygon_light(bow_tie, [1, 1, 1]))
-    expect_value_error("to_world", lambda: scene.set_camera(np.eye(3), 1.0))
-    expect_value_error("to_world", lambda: scene.set_camera(np.zeros((4, 4)), 1.0))
-    expect_value_error("fov_x", lambda: scene.set_camera(np.eye(4), np.pi))
-    expect_value_error("aperture_size", lambda: scene.set_camera(np.eye(4), 1.0, aperture_size=-1))
-    expect_value_error("aperture_blades", lambda: scene.set_camera(np.eye(4), 1.0, aperture_blades=-1))
-    expect_value_error("aperture_ratio", lambda: scene.set_camera(np.eye(4), 1.0, aperture_ratio=0))
-    expect_value_error("focus_distance", lambda: scene.set_camera(np.eye(4), 1.0, aperture_size=1, focus_distance=0))
-    expect_value_error("panorama_type", lambda: scene.set_panorama_camera(np.eye(4), "fisheye"))
-    fisheye = "fisheye_equisolid"
-    expect_value_error("fisheye_fov", lambda: scene.set_panorama_camera(np.eye(4), fisheye, fisheye_fov=0))
-    expect_value_error("fisheye_lens", lambda: scene.set_panorama_camera(np.eye(4), fisheye, fisheye_lens=-1))
-    expect_value_error("sensor_width", lambda: scene.set_panorama_camera(np.eye(4), fisheye, sensor_width=np.inf))
-    expect_value_error(
-        "fisheye_polynomial", lambda: scene.set_panorama_camera(np.eye(4), fisheye, fisheye_polynomial=1)
-    )
-    expect_value_error("left", lambda: scene.set_camera_window(np.eye(4), 1, 1, 0, 1))
-    expect_value_error("bottom", lambda: scene.set_camera_window(np.eye(4), 0, 1, 1, 0))
-    expect_value_error("clip_start", lambda: scene.set_camera_window(np.eye(4), 0, 1, 0, 1, clip_start=-1))
-    expect_value_error("clip_end", lambda: scene.set_camera_window(np.eye(4), 0, 1, 0, 1, clip_start=2, clip_end=1))
 
 
 # --- while a picture is drawn, by the library and by Monte Carlo

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -126,48 +125,8 @@ def test_higher_orders_are_closer() -> None:
     assert errors[2] <= 1e-4
 
 
-BAD_SETTINGS = [
-    *(("order", bad) for bad in (0, -1, 65, 2.5, "8", "x", None, [8])),
-    *(("tolerance", bad) for bad in (0, -1e-3, math.nan, math.inf, "fine", None, [1e-3, 1e-2])),
-    *(("cos_theta_o", bad) for bad in (-0.01, 1.001, math.nan, math.inf, "up", None, [0.5, 2], 1j)),
-    *(("threads", bad) for bad in (-1, 1.5, None)),
-    ("method", "nothing"),
-]
-BAD: dict[Any, list[tuple[str, Any]]] = {
-    shlight.shade_spheres: [
-        *(("centers", bad) for bad in ([0, 0], [[1, 2, 3, 4]], [0, 0, math.nan], "up", None)),
-        *(("radii", bad) for bad in (0, -1, math.nan, math.inf, "big", None, [0.5, -0.5], 2.001)),
-    ],
-    shlight.shade_polygons: [
-        *(("vertices", bad) for bad in (TRIANGLE[:2], [TRIANGLE[:2]] * 3, [], [1, 2, 3], [[1, 2]] * 3, "square", None)),
-        *(("vertices", [[bad, 0, 1], *TRIANGLE[1:]]) for bad in (math.nan, math.inf)),
-        ("vertices", [*TRIANGLE, [0, 0, 3]]),  # not planar
-    ],
-    shlight.shade_disks: [
-        *(("centers", bad) for bad in ((0, 0), (0, 0, math.nan), (0.1, 0, 0))),  # the last holds the shading point
-        ("half_axes_u", (0, 0, 0)),
-        ("half_axes_v", (2, 0, 0)),
-        ("method", "monte_carlo"),
-    ],
-}
-
-
-@all_functions
-def test_bad_arguments_are_named(function: Any) -> None:
-    for name, bad in [*BAD_SETTINGS, *BAD[function]]:
-        with pytest.raises(ValueError, match=name):
-            function(**({**LIGHTS[function], "bsdf": BSDF, "cos_theta_o": 0.5} | {name: bad}))
-
-
 @all_functions
 def test_axes_that_do_not_broadcast_are_named(function: Any) -> None:
     first, *others = (np.asarray(value, float) for value in LIGHTS[function].values())
     with pytest.raises(ValueError, match="cos_theta_o"):
         function(np.broadcast_to(first, (2, *first.shape)), *others, BSDF, [0.5] * 3)
-
-
-@all_functions
-@pytest.mark.parametrize("bad", [None, 0.5, "ggx"])
-def test_a_material_must_be_one(function: Any, bad: object) -> None:
-    with pytest.raises(TypeError):
-        function(*LIGHTS[function].values(), bad, 0.5)
