@@ -232,16 +232,16 @@ void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t se
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 8 : 1;
+const std::size_t kMore = testing::all_tests() ? 20 : 1;
 
 TEST(Cap, AgreesWithReferenceUpToOrder16) {
-    compare(2000 * kMore, {1, 2, 8, 16}, 100);
+    compare(800 * kMore, {1, 2, 8, 16}, 100);
 }
 TEST(Cap, AgreesWithReferenceAtOrder33) {
-    compare(400 * kMore, {33}, 200);
+    compare(160 * kMore, {33}, 200);
 }
 TEST(Cap, AgreesWithReferenceAtOrder64) {
-    compare(150 * kMore, {64}, 300);
+    compare(60 * kMore, {64}, 300);
 }
 
 }  // namespace

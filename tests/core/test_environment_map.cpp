@@ -327,7 +327,7 @@ class Floor {
     }
     double expected(const LatLong& picture, const Bsdf& bsdf) const {
         const glm::dmat3 frame(x_, y_, normal_);
-        return sphere_integral(500, [&](const Vec3d& direction) {
+        return sphere_integral(250, [&](const Vec3d& direction) {
             return direction.z > 0
                        ? double{bsdf.evaluate(direction, view_ * frame).x *
                                 radiance_from(picture, glm::transpose(picture.to_world) * frame * direction).x}

@@ -147,16 +147,16 @@ void compare(std::size_t count, int order, std::uint64_t seed) {
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 8 : 1;
+const std::size_t kMore = testing::all_tests() ? 16 : 1;
 
 TEST(PolygonBoosted, AgreesWithReferenceAtOrder1) {
-    compare(30 * kMore, 1, 700);
+    compare(15 * kMore, 1, 700);
 }
 TEST(PolygonBoosted, AgreesWithReferenceAtOrder16) {
-    compare(30 * kMore, 16, 720);
+    compare(15 * kMore, 16, 720);
 }
 TEST(PolygonBoosted, AgreesWithReferenceAtOrder32) {
-    compare(8 * kMore, 32, 740);
+    compare(4 * kMore, 32, 740);
 }
 
 /// The reference against product cubature over the polygon itself, and against more nodes.
