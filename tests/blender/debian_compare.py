@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Runs inside a window of Debian's Blender: compares with Cycles, drags the split, ends comparisons."""
 
-import json
-import os
 import subprocess
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
@@ -15,7 +12,9 @@ import shlight_blender
 from shlight_blender.compare import overlay, panel, results
 from shlight_blender.compare.session import session
 
-FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
+sys.path.append(str(Path(__file__).parent))
+from debian_steps import FOLDER, start
+
 found = {"ends": {}}
 
 
@@ -65,7 +64,7 @@ def build(scene):
     bpy.ops.ed.undo_push(message="turned")
 
 
-def start(**options):
+def begin(**options):
     with here(area_of("PROPERTIES")):
         assert bpy.ops.shlight.compare("INVOKE_DEFAULT", **options) == {"RUNNING_MODAL"}
 
@@ -88,9 +87,9 @@ def steps():
 def compare():
     """One that ends well; the panel and the status bar meanwhile."""
     found["was_dirty"] = bpy.data.is_dirty
-    start(reference_seconds=1.0)
+    begin(reference_seconds=1.0)
     try:
-        start()
+        begin()
     except RuntimeError as error:
         found["twice"] = str(error)
     found["stages"] = []
@@ -168,7 +167,7 @@ def undo_and_redo():
 
 def end_by(way):
     before = files()
-    start()
+    begin()
     process = session.job._worker._process.pid
     for _ in range(5):
         yield
@@ -209,21 +208,5 @@ def disable():
     found["operator_left"] = hasattr(bpy.types, "SHLIGHT_OT_compare")
 
 
-def run():
-    try:
-        next(plan)
-        return 0.1
-    except StopIteration:
-        (FOLDER / "found.json").write_text(json.dumps(found))
-    except Exception:
-        traceback.print_exc()
-        os._exit(1)
-    bpy.ops.wm.quit_blender()
-    return None
-
-
-bpy.context.preferences.view.show_splash = False
 panel.SHLIGHT_RENDER_PT_compare.bl_options = set()
-shlight_blender.register()
-plan = steps()
-bpy.app.timers.register(run, first_interval=0.5, persistent=True)
+start(steps(), found)

@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Runs inside a window of Debian's Blender: changes a scene and its view in a rendered viewport, and quits."""
 
-import json
-import os
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
 import numpy as np
 
-import shlight_blender
 from shlight_blender import viewport
 from shlight_blender.picture_maker import PictureMaker
 
-FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
+sys.path.append(str(Path(__file__).parent))
+from debian_steps import FOLDER, start
+
 LONGEST_WAIT, CALM = 600, 4  # ticks
 found = {"updated": {}, "differs": {}, "anew": {}}
 shown = []  # RenderedViewports, the latest last
@@ -244,21 +242,5 @@ def two_viewports():
     found["threads"] = sum(maker._thread is not None and maker._thread.is_alive() for maker in makers)
 
 
-def run(plan):
-    try:
-        next(plan)
-        return 0.05
-    except StopIteration:
-        (FOLDER / "found.json").write_text(json.dumps(found))
-    except Exception:
-        traceback.print_exc()
-        os._exit(1)
-    bpy.ops.wm.quit_blender()
-    return None
-
-
-bpy.context.preferences.view.show_splash = False
-shlight_blender.register()
 watch()
-plan = steps()
-bpy.app.timers.register(lambda: run(plan), first_interval=0.5)
+start(steps(), found, 0.05)

@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Runs inside a window of Debian's Blender: selects shlight, shows panels and viewport, renders twice, and quits."""
 
-import json
-import os
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
 import nodeitems_utils
 
-import shlight_blender
 from shlight_blender import engine, panels, record
 from shlight_blender.export import bake
 
-FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
+sys.path.append(str(Path(__file__).parent))
+from debian_steps import FOLDER, start
+
 ended = []
 drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "kept": [], "previews": []}
 
@@ -122,23 +120,7 @@ def final_render(scene, path):
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)
 
 
-def run(plan):
-    try:
-        next(plan)
-        return 0.1
-    except StopIteration:
-        (FOLDER / "drawn.json").write_text(json.dumps(drawn))
-    except Exception:
-        traceback.print_exc()
-        os._exit(1)
-    bpy.ops.wm.quit_blender()
-    return None
-
-
-bpy.context.preferences.view.show_splash = False
 watch()
 for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
     handlers.append(lambda *_: ended.append(True))
-shlight_blender.register()
-plan = steps()
-bpy.app.timers.register(lambda: run(plan), first_interval=0.5)
+start(steps(), drawn)

@@ -136,8 +136,14 @@ def test_principled_names_its_diffuse_part(pictures: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("name", ["example_scene", "glossy_balls", "glossy_floor", "roughness_ramp"])
 def test_example_scenes_are_built(tmp_path: Path, name: str) -> None:
-    done = run_blender("-b", script=str(ROOT / "examples" / f"{name}.py"), folder=tmp_path)
-    assert done.returncode == 0, spoken(done)
+    script = tmp_path / "count.py"
+    script.write_text(
+        f"import runpy\nimport bpy\nrunpy.run_path({str(ROOT / 'examples' / name)!r} + '.py', run_name='__main__')\n"
+        "kinds = [shown.type for shown in bpy.context.scene.objects]\n"
+        "print('built', bpy.context.scene.camera is not None, *(kinds.count(kind) for kind in ('MESH', 'LIGHT')))\n"
+    )
+    said = spoken(run_blender("-b", script=str(script), folder=tmp_path))
+    assert re.search(r"^built True [1-9]\d* [1-9]\d*$", said, re.MULTILINE), said
 
 
 def test_errors_do_not_crash(pictures: dict[str, Any]) -> None:
@@ -236,7 +242,7 @@ def test_window(tmp_path: Path) -> None:
     code, output = run_in_window(script="debian_window.py", folder=tmp_path, size=(800, 600))
     assert code == 0, output
     assert "Traceback" not in output, output
-    drawn = json.loads((tmp_path / "drawn.json").read_text())
+    drawn = json.loads((tmp_path / "found.json").read_text())
     shown = {
         "RENDER_PT_sampling",
         "RENDER_PT_report",

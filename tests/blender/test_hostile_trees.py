@@ -213,6 +213,7 @@ def test_hostile_tree(studio: Any, build: Callable[[Any, Any], None], named: str
     plane = studio.plane(material=material)
     plane["label"] = "some text"
     plane.data.uv_layers.new(name="UVMap")
+    studio.box((0.5, 0.5, 0.5), studio.material(name="Witness"), location=(0, 0, 1.2))  # of nothing that is wrong
     studio.area(energy=150)
     studio.camera()
     build(material.node_tree, material.node_tree.nodes["Principled BSDF"])
@@ -221,6 +222,7 @@ def test_hostile_tree(studio: Any, build: Callable[[Any, Any], None], named: str
     else:
         image = studio.render("SHLIGHT")
     assert np.isfinite(image).all()
+    assert image[..., :3].max() > 0.1  # the box, whatever becomes of the floor
     messages = studio.messages(most=99)
     assert len(messages) == bool(named), messages
     assert named in "".join(messages)

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import gc
+import resource
 import threading
+from pathlib import Path
 
 import numpy as np
 
@@ -20,12 +22,17 @@ def basis(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return directions, shlight.sh_basis(directions, ORDER)
 
 
-def test_memory_is_used_again():
-    _, first = basis(1)
-    address = first.ctypes.data
-    del first
-    _, second = basis(2)
-    assert second.ctypes.data == address
+def resident() -> int:
+    """Bytes of this process in memory."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+
+def test_memory_of_results_that_are_gone_is_free_again():
+    basis(1)
+    before = resident()
+    for seed in range(16):
+        basis(seed)
+    assert resident() - before <= 4 * 4 * ORDER**2 * COUNT  # of the sixteen, four
 
 
 def test_living_results_stay_as_they_are():
