@@ -15,7 +15,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-SIDE = 6  # faces along a patch
+SIDE = 4  # faces along a patch
 # Seeds of Cycles' pictures: its filter moves one sample in a thousand, so the nearer picture counts.
 SEEDS = (1, 2)
 COLUMNS = 24  # patches along the picture
