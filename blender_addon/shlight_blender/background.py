@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blenders without a window do: open a scene, render it as it is, and hand out the picture.
+"""A second Blender in the background: how it is started, and how it opens scenes and renders.
 
-As a reference nothing in Cycles trades truth for calm.
+It is of the same program, or of the Python that has the module bpy. Pictures are handed out as they are, and in Cycles
+as a reference nothing trades truth for calm.
 """
 
 from __future__ import annotations
 
+import os
 import runpy
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,7 +22,44 @@ import numpy.typing as npt
 from . import register as register_addon
 from .compat import set_sample_range
 from .names import name_of
-from .serving import SceneError
+from .worker_process import SceneError
+
+START = Path(__file__).with_name("start.py")
+
+
+def command(worker: str) -> list[str]:
+    """How it is started to run main() of a module of the add-on, such as "export.bake_worker"."""
+    arguments = [str(START), "--", __package__, os.pathsep.join(folder for folder in sys.path if folder), worker]
+    if bpy.app.binary_path:
+        options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python"]
+        return [bpy.app.binary_path, *options, *arguments]
+    return [sys.executable, *arguments]
+
+
+def environment() -> dict[str, str]:
+    """The other Python finds the modules of this one, except Blender's own: their bpy is not the one to start with."""
+    if bpy.app.binary_path:
+        return dict(os.environ)
+    scripts = bpy.utils.system_resource("SCRIPTS")
+    return os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p and not p.startswith(scripts))}
+
+
+def save_unsaved_images(images: Iterable[Any], folder: Path) -> dict[str, str]:
+    """Names of the images whose changes are in no file, and of the files in `folder` with their pixels."""
+    files = {}
+    for number, image in enumerate(image for image in images if image.is_dirty):
+        pixels = np.empty(len(image.pixels), dtype=np.float32)
+        image.pixels.foreach_get(pixels)
+        files[image.name] = f"image_{number}.npy"
+        np.save(folder / files[image.name], pixels)
+    return files
+
+
+def load_unsaved_images(files: dict[str, str], folder: Path) -> None:
+    """Gives the images of the file that is open the pixels that `save_unsaved_images` has written."""
+    for name, file in files.items():
+        bpy.data.images[name].pixels.foreach_set(np.load(folder / file))
+
 
 Bounces = tuple[int, int, int]  # at most in all, on glossy surfaces, and through surfaces
 FEW_PIXELS = 16

@@ -13,14 +13,22 @@ from numpy.typing import NDArray
 
 from . import record, running
 from .compat import write_pass
-from .denoising import denoised, with_features
 from .frame import Frame, frame_of, memory_problem
 from .names import is_utf8, name_of, printable
 from .native import native_problem
-from .passes import Arrays, LayerPass, layer_passes, pass_arguments, stamp_cryptomattes, write_passes
+from .passes import (
+    Arrays,
+    LayerPass,
+    denoised,
+    layer_passes,
+    pass_arguments,
+    stamp_cryptomattes,
+    with_features,
+    write_passes,
+)
+from .record import inexact_light, status_of
 from .report import Effect, ExportCancelled, ExportError
 from .running import ENGINE
-from .status import inexact_light, status_of
 
 MOST_WARNINGS = 20
 # Times of updates with unfinished pictures [s].

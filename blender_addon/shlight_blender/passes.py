@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -164,3 +164,26 @@ def write_passes(layer: Any, passes: list[LayerPass], arrays: Arrays) -> None:
         target = with_name(layer.passes, own.name)
         if pixels is not None and target is not None:
             write_pass(target, pixels[::-1].reshape(-1, len(own.channels)))
+
+
+def with_features(passes: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of `shlight.render` that ask for what `denoised` needs, too."""
+    from shlight.denoising import FEATURES
+
+    return {**passes, "passes": list(dict.fromkeys([*passes.get("passes", ()), *FEATURES]))}
+
+
+def denoised(arrays: Arrays, quality: str, threads: int, goes_on: Callable[[float], bool]) -> Arrays:
+    """The arrays of a render, and in place of "combined" what Open Image Denoise makes of it.
+
+    goes_on: False leaves the picture as it is.
+    """
+    import shlight
+    from shlight.denoising import FEATURES
+
+    features = (arrays[name] for name in FEATURES)
+    try:
+        combined = shlight.denoise(arrays["combined"], *features, quality=quality, threads=threads, progress=goes_on)
+    except shlight.RenderCancelled:
+        return arrays
+    return {**arrays, "combined": combined}

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .denoising import denoised, with_features
 from .frame import Frame
-from .status import status_of
+from .passes import denoised, with_features
+from .record import status_of
 
 LONGEST_WAIT = 5.0  # seconds, for a thread that is to end
 LARGEST = 65504.0  # of the half floats that a graphics card keeps

@@ -1,21 +1,138 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rendered viewport: its scene follows Blender's, and it draws what has been rendered of it so far."""
+"""The rendered viewport: its scene and its view follow Blender's, and it draws what has been rendered of it so far."""
 
 from __future__ import annotations
 
 import time
 import traceback
 import weakref
+from dataclasses import dataclass
 from typing import Any
 
+import bpy
 import gpu
 import numpy as np
 from gpu_extras.presets import draw_texture_2d
+from numpy.typing import NDArray
 
 from . import record
+from .frame import Frame, frame_of
 from .picture_maker import Job, Picture, PictureMaker
 from .report import ExportError
-from .viewport_view import ViewportView
+
+Matrix = NDArray[np.float64]
+
+PIXEL_SIZES = {"1": 1, "2": 2, "4": 4, "8": 8}
+
+
+@dataclass(frozen=True)
+class ViewportView:
+    """The view of a region; equal if the pictures are.
+
+    to_world, projection: 4 x 4, row by row, as `export.camera.set_projection` takes them.
+    aperture: as of `export.lens.aperture_of`. panorama: as of `export.lens.panorama_of`; None: the picture is plane.
+    window: what of the whole panorama the region's frame shows: left, right, bottom and top; 0 ... 1 is all of it.
+    """
+
+    frame: Frame
+    to_world: tuple[float, ...]
+    projection: tuple[float, ...]
+    clips: tuple[float, float]
+    orthographic: bool
+    aperture: dict[str, float]
+    panorama: dict[str, Any] | None
+    window: tuple[float, ...]
+
+    @staticmethod
+    def of(context: Any, depsgraph: Any) -> ViewportView:
+        """The view of the region that is drawn."""
+        from .export import aperture_of, panorama_of
+
+        scene, view, space = depsgraph.scene, context.region_data, context.space_data
+        to_world = np.linalg.inv(np.array(view.view_matrix, dtype=np.float64))
+        projection = np.array(view.window_matrix, dtype=np.float64)
+        by_camera = view.view_perspective == "CAMERA" and space.camera is not None
+        camera = space.camera if by_camera and space.camera.type == "CAMERA" else None
+        lens = camera.evaluated_get(depsgraph).data if camera else space
+        clips = float(lens.clip_start), float(lens.clip_end)
+        if not view.is_perspective and not by_camera:
+            # An orthographic view of no camera shows what lies behind its eye too.
+            to_world[:3, 3] += clips[1] * to_world[:3, 2]
+            clips = 0.0, 2.0 * clips[1]
+        frame = _frame(context, scene, projection if by_camera else None)
+        panoramic = camera is not None and lens.type == "PANO"
+        return ViewportView(
+            frame,
+            tuple(to_world.ravel()),
+            tuple(projection.ravel()),
+            clips,
+            not view.is_perspective,
+            aperture_of(lens, to_world, depsgraph) if camera else {},
+            panorama_of(lens, frame_of(scene.render), scene.render) if panoramic else None,
+            _panorama_window(scene, camera, projection, frame) if panoramic else (),
+        )
+
+    def set_camera(self, scene: Any) -> Any:
+        """Gives it to a shlight.Scene; returns the `export.camera.View`; ExportError as of `set_panorama`."""
+        from .export import set_panorama, set_projection
+
+        to_world, projection = (np.reshape(matrix, (4, 4)) for matrix in (self.to_world, self.projection))
+        if self.window:
+            return set_panorama(scene, to_world, self.window, self.clips, self.panorama, self.aperture)
+        return set_projection(
+            scene, to_world, projection, self.frame, self.clips, self.aperture, orthographic=self.orthographic
+        )
+
+
+def pixel_size(scene: Any) -> int:
+    """How many pixels of the region one of the picture is wide."""
+    chosen = scene.render.preview_pixel_size
+    return PIXEL_SIZES.get(chosen) or max(1, round(bpy.context.preferences.system.pixel_size))
+
+
+def _frame(context: Any, scene: Any, camera_projection: Matrix | None) -> Frame:
+    """The region in pixels of the picture, and its render border; the camera's border if its projection is given."""
+    size = pixel_size(scene)
+    width, height = (max(1, length // size) for length in (context.region.width, context.region.height))
+    low, high = np.zeros(2), np.ones(2)
+    if camera_projection is not None:
+        if scene.render.use_border:
+            low, high = _camera_border(scene, context.space_data.camera, camera_projection)
+    elif context.space_data.use_render_border:
+        space = context.space_data
+        low = np.array([space.render_border_min_x, space.render_border_min_y])
+        high = np.array([space.render_border_max_x, space.render_border_max_y])
+    pixels = np.array([width, height])
+    left, bottom = (int(c) for c in np.clip(np.floor(low * pixels), 0, pixels))
+    right, top = (int(c) for c in np.clip(np.ceil(high * pixels), 0, pixels))
+    return Frame(width, height, left, bottom, right, top)
+
+
+def _camera_frame(scene: Any, camera: Any, projection: Matrix) -> tuple[Matrix, Matrix]:
+    """The lower left and upper right corner of what renders show, as shares of the region."""
+    corners = np.array([(*corner, 1.0) for corner in camera.data.view_frame(scene=scene)]) @ projection.T
+    shares = 0.5 + 0.5 * corners[:, :2] / corners[:, 3:]
+    return shares.min(axis=0), shares.max(axis=0)
+
+
+def _panorama_window(scene: Any, camera: Any, projection: Matrix, frame: Frame) -> tuple[float, ...]:
+    """A panorama fills the camera's frame, as in Cycles, and goes on around it where it can."""
+    low, high = _camera_frame(scene, camera, projection)
+    shift, full = [camera.data.shift_x, camera.data.shift_y], [frame.full_width, frame.full_height]
+    start, end = (
+        (np.array(corner) / full - low) / (high - low) + shift
+        for corner in ((frame.left, frame.bottom), (frame.right, frame.top))
+    )
+    return float(start[0]), float(end[0]), float(start[1]), float(end[1])
+
+
+def _camera_border(scene: Any, camera: Any, projection: Matrix) -> tuple[Matrix, Matrix]:
+    """The lower left and upper right corner of the scene's render border, as shares of the region."""
+    low, high = _camera_frame(scene, camera, projection)
+    render = scene.render
+    least = np.array([render.border_min_x, render.border_min_y])
+    most = np.array([render.border_max_x, render.border_max_y])
+    return low + least * (high - low), low + most * (high - low)
 
 
 class RenderedViewport:

@@ -10,7 +10,7 @@ import numpy as np
 
 import shlight_blender
 from shlight_blender.compare import overlay, panel, results
-from shlight_blender.compare.session import session
+from shlight_blender.compare.job import session
 
 sys.path.append(str(Path(__file__).parent))
 from debian_steps import FOLDER, start

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from shlight_blender.compare import job, measure, panel, places, results, session
+from shlight_blender.compare import job, measure, panel, places, results
 from shlight_blender.compare.pictures import PALETTE, in_palette
 
 Image = NDArray[np.float32]
@@ -293,7 +293,7 @@ def refusal() -> str:
     with pytest.raises(RuntimeError) as error:
         bpy.ops.shlight.compare()
     assert files() == before
-    assert session.session.job is None
+    assert job.session.job is None
     assert results.last is None
     return str(error.value)
 
@@ -339,7 +339,7 @@ def test_only_one_runs_and_its_end_leaves_nothing(studio: Any) -> None:
             studio.__init__(studio.folder)
             studio.simple_scene()
         before = files()
-        running = session.session.job = job.Job(bpy.context, denoise=False, reference_seconds=0.0)
+        running = job.session.job = job.Job(bpy.context, denoise=False, reference_seconds=0.0)
         with pytest.raises(RuntimeError, match="a comparison is running"):
             bpy.ops.shlight.compare()
         assert running.figures(60.0) is None
@@ -367,10 +367,10 @@ def test_the_panel_shows_progress_and_what_was_found(studio: Any, monkeypatch: p
     )
     drawn = SimpleNamespace(layout=layout)
     running = SimpleNamespace(stage=SimpleNamespace(name="Reference", seconds=3.0, share=0.25))
-    monkeypatch.setattr(session.session, "job", running)
+    monkeypatch.setattr(job.session, "job", running)
     panel.SHLIGHT_RENDER_PT_compare.draw(drawn, context)
     assert said == ["Reference (3 s), 25%", "Cancel"]
-    monkeypatch.setattr(session.session, "job", None)
+    monkeypatch.setattr(job.session, "job", None)
     part = {"seconds": 1.0, "samples": 7, "settings": {"max_bounces": 4}}
     there = {"place": "Object 'Box'", "difference": -0.5, "messages": [], "of_light": []}
     figures = {"shlight": part, "cycles_same_time": part, "rel_mse_of_both": 0.5, "differences": [there]}

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from shlight import nodes
 from shlight_blender.export.emission import VaryingEmission
-from shlight_blender.export.emission_pieces import TOLERANCE, cut, sampling_levels, share_colors
-from shlight_blender.export.expressions import Surroundings
 from shlight_blender.export.materials import read_material
+from shlight_blender.export.nodes import Surroundings
+from shlight_blender.export.textured_meshes import TOLERANCE, cut, sampling_levels, share_colors
 from shlight_blender.report import ExportReport
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from shlight_blender.compare.places import Finder
-from shlight_blender.export.lens import aperture_of
+from shlight_blender.export.camera import aperture_of
 from shlight_blender.report import ExportError
 
 SLOW = pytest.mark.slow

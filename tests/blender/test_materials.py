@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
-from shlight_blender.export.blackbody import blackbody_rgb
+from shlight_blender.export.texture_nodes import blackbody_rgb
 
 
 def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:

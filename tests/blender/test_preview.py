@@ -22,7 +22,7 @@ import pytest
 from shlight import images, metrics
 from shlight_blender.background import open_scene, use_cycles
 from shlight_blender.compare.render import LIGHT_RAYS, bounces_of, without_shadows
-from shlight_blender.serving import SceneError
+from shlight_blender.worker_process import SceneError
 from shlight_tools.preview import main, options
 from shlight_tools.preview.command import FIRST_RESULTS, RESULTS
 from shlight_tools.preview.worker import prepare

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import shlight
-from shlight_blender.export.even_cells import cut_square
+from shlight_blender.export.textured_lamps import cut_square
 
 Array = NDArray[np.float64]
 SLOW = pytest.mark.slow

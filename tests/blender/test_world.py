@@ -14,7 +14,7 @@ import pytest
 
 from shlight_blender import record
 from shlight_blender.export.bake import BakeError, bake_world
-from shlight_blender.export.world_program import radiance_of
+from shlight_blender.export.world import radiance_of
 from shlight_blender.report import Effect, ExportReport
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the comparison adds to Blender beside its panel and operators: settings, a key, and a watch over its results."""
+"""What the comparison adds to Blender beside its panel: its settings, a key, and a watch over its results."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import overlay, results
-from .operators import SHLIGHT_OT_drag_split
-from .session import session
-from .settings import SHLIGHT_CompareSettings
+from .job import session
+from .panel import SHLIGHT_CompareSettings, SHLIGHT_OT_drag_split
 
 _keys: list[tuple[Any, Any]] = []
 

@@ -25,14 +25,22 @@ from shlight import metrics
 
 from .. import record
 from .. import register as register_addon
-from ..background import Bounces, few_pixels, last_picture, leave_plain, open_blend, use_cycles, use_denoiser
-from ..export.expressions import Surroundings
+from ..background import (
+    Bounces,
+    few_pixels,
+    last_picture,
+    leave_plain,
+    load_unsaved_images,
+    open_blend,
+    use_cycles,
+    use_denoiser,
+)
 from ..export.materials import read_material
+from ..export.nodes import Surroundings
 from ..names import name_of
-from ..other_blender import load_unsaved_images
 from ..report import ExportReport
 from ..running import ENGINE
-from ..serving import Channel, SceneError, serve
+from ..worker_process import Channel, SceneError, serve
 from .measure import Image, add_measurements, largest_differences
 from .places import Finder, show_what_is_rendered
 from .reference import Request, SampleTime, alternate, calibrate, middle, render_halves, rounds_for

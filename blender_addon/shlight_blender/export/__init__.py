@@ -4,9 +4,8 @@
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
 from .bake import bake_in_background, kept_world
-from .camera import Eye, set_panorama, set_projection
+from .camera import Eye, aperture_of, panorama_of, set_panorama, set_projection
 from .changes import Changes, changes_of, everything
-from .lens import aperture_of, panorama_of
 from .scene import ExportedScene, export_scene
 from .settings import RenderSettings, preview_settings, render_settings, viewport_settings
 

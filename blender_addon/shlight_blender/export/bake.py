@@ -21,8 +21,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..background import command, environment, save_unsaved_images
 from ..names import one_line
-from ..other_blender import command, environment, save_unsaved_images
 from ..worker_process import WorkerError, WorkerProcess
 from .bake_key import bake_key
 from .nodes import all_nodes

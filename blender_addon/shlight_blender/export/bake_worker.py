@@ -20,9 +20,8 @@ import numpy as np
 from mathutils import Euler, Vector
 from numpy.typing import NDArray
 
-from ..background import last_picture, leave_plain, set_threads, use_cycles
-from ..other_blender import load_unsaved_images
-from ..serving import Channel, serve
+from ..background import last_picture, leave_plain, load_unsaved_images, set_threads, use_cycles
+from ..worker_process import Channel, serve
 
 Picture = NDArray[np.float32]
 

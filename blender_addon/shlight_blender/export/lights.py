@@ -16,11 +16,9 @@ import shlight
 from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
-from .expressions import Surroundings
 from .materials import with_light
-from .nodes import RGB, rgb
-from .shaders import SHADERS
-from .surface import ShaderReader
+from .nodes import RGB, Surroundings, rgb
+from .shaders import SHADERS, ShaderReader
 from .textured_lamps import UNIT_SQUARE, EvenLamp, EvenPart, even_lamp
 
 # The widest sun of Blender 3.4 [rad]: beyond, the plane that it is even on is nearly parallel to its light.

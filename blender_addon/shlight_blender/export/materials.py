@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials: what a surface reflects and emits, read as Cycles reads it."""
+"""Materials: what a surface reflects, emits and gives to AOVs, read as Cycles reads it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,15 +13,36 @@ from shlight import nodes
 from shlight.nodes import Shader
 from shlight.nodes.rays import Ray, color_on_ray
 
-from ..compat import MATERIALS, lets_light_through, uses_nodes
+from ..compat import MATERIALS, aov_name, lets_light_through, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
-from .aovs import with_aovs
 from .emission import VaryingEmission, of_both_sides
-from .expressions import Surroundings
-from .nodes import RGB, origin
-from .shaders import SHADERS
-from .surface import ShaderReader
+from .nodes import RGB, Surroundings, origin
+from .shaders import SHADERS, ShaderInputs, ShaderReader
+
+
+def with_aovs(shader: Shader, reader: ShaderReader, tree: Any) -> Shader:
+    """A shader with what the nodes of its tree give to the AOVs that are asked for."""
+    wanted = reader.surroundings.passes.aovs
+    aovs = {}
+    for node, groups in _outputs(tree):
+        kind = wanted.get(aov_name(node))
+        if kind is not None:
+            inputs = ShaderInputs(reader, node, None, groups)
+            aovs[aov_name(node)] = inputs.number("Value") if kind == "VALUE" else inputs.color("Color")
+    return shader.with_aovs(aovs) if aovs else shader
+
+
+def _outputs(tree: Any, groups: tuple[Any, ...] = ()) -> Iterator[tuple[Any, tuple[Any, ...]]]:
+    """AOV Output nodes of a tree and its groups, with the groups entered on the way."""
+    for node in tree.nodes:
+        if node.mute:
+            continue
+        if node.type == "OUTPUT_AOV":
+            yield node, groups
+        elif node.type == "GROUP" and node.node_tree is not None:
+            yield from _outputs(node.node_tree, (*groups, node))
+
 
 # Albedo of Cycles' surface for objects without material.
 DEFAULT_ALBEDO = 0.8

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers on an evaluated mesh and its instances that shader programs read."""
+"""Numbers on an evaluated mesh that shader programs read: its attributes, and what its shape gives."""
 
 from __future__ import annotations
 
@@ -11,9 +11,77 @@ from numpy.typing import NDArray
 
 from ..compat import Triangles, uv_coordinates, values_of
 from ..names import with_name
-from .mesh_shape import pointiness, random_per_island
+from .object_values import hashed, share
 
-Array = NDArray[np.float32]
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+def _edges(mesh: Any) -> Index:
+    return values_of(mesh.edges, "vertices", np.int32, 2).astype(np.int64)
+
+
+def _vectors(collection: Any, name: str) -> Array:
+    return values_of(collection, name, np.float32, 3).astype(np.float64)
+
+
+def _unit(v: Array) -> Array:
+    length = np.linalg.norm(v, axis=1, keepdims=True)
+    return np.divide(v, length, out=np.zeros_like(v), where=length > 0.0)
+
+
+def pointiness(mesh: Any) -> Array:
+    """Per vertex how far its edges lean towards its normal: 0.5 where it is flat, more on crests, less in grooves.
+
+    Vertices in the same place count as one; each takes the mean of itself and its neighbours.
+    """
+    places, one_of = np.unique(_vectors(mesh.vertices, "co"), axis=0, return_inverse=True)
+    one_of = one_of.reshape(-1)
+    count = len(places)
+    normals = np.zeros((count, 3))
+    np.add.at(normals, one_of, _vectors(mesh.vertices, "normal"))
+    edges = np.unique(np.sort(one_of[_edges(mesh)], axis=1), axis=0)
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    both = np.concatenate([edges, edges[:, ::-1]])
+    degree = np.bincount(both[:, 0], minlength=count)
+    leaning = np.zeros((count, 3))
+    np.add.at(leaning, both[:, 0], _unit(places[both[:, 1]] - places[both[:, 0]]))
+    leaning /= np.maximum(degree, 1)[:, None]
+    cosine = np.clip((_unit(normals) * leaning).sum(axis=1), -1.0, 1.0)
+    raw = np.where(degree > 0, np.arccos(cosine) / np.pi, 0.0)
+    smooth = (raw + np.bincount(both[:, 0], weights=raw[both[:, 1]], minlength=count)) / (degree + 1)
+    found: Array = smooth[one_of]
+    return found
+
+
+def random_per_island(mesh: Any) -> Array:
+    """Per vertex a random number that all vertices joined by edges share.
+
+    It is that of the vertex on which a union of sets by rank, edge by edge, settles.
+    """
+    parent = list(range(len(mesh.vertices)))
+    rank = [0] * len(parent)
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    for a, b in _edges(mesh).tolist():
+        first, second = root(a), root(b)
+        if first == second:
+            continue
+        if rank[first] < rank[second]:
+            first, second = second, first
+        parent[second] = first
+        rank[first] += rank[first] == rank[second]
+    roots = [root(i) for i in range(len(parent))]
+    numbers = {i: share(hashed(i)) for i in set(roots)}
+    return np.array([numbers[i] for i in roots])
+
+
+FloatArray = NDArray[np.float32]
 
 # The UV map for rendering.
 UV = ""
@@ -43,7 +111,7 @@ COMPONENTS = {
 }
 
 
-def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> dict[str, Array]:
+def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> dict[str, FloatArray]:
     """The mesh's attributes with these names, per corner of its triangles (k, 3, c).
 
     UV is the UV map for rendering; the prefixes above name what is made of a mesh.
@@ -56,7 +124,7 @@ def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> di
     return found
 
 
-def _attribute(mesh: Any, triangles: Triangles, name: str) -> Array | None:
+def _attribute(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
     if name.startswith(TANGENT):
         return _tangents(mesh, triangles, name.removeprefix(TANGENT))
     if name.startswith(COLOR):
@@ -78,14 +146,14 @@ def _uv_layer(mesh: Any, name: str) -> Any:
     )
 
 
-def _uvs(mesh: Any, triangles: Triangles, name: str) -> Array | None:
+def _uvs(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
     layer = _uv_layer(mesh, name)
     if layer is None:
         return None
     return np.nan_to_num(uv_coordinates(layer), posinf=0.0, neginf=0.0)[triangles.corners]
 
 
-def _tangents(mesh: Any, triangles: Triangles, name: str) -> Array | None:
+def _tangents(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
     layer = _uv_layer(mesh, name)
     if layer is None:
         return None
@@ -99,14 +167,14 @@ def _tangents(mesh: Any, triangles: Triangles, name: str) -> Array | None:
     return np.concatenate([tangents, signs[:, None]], axis=1)[triangles.corners]
 
 
-def _color(mesh: Any, triangles: Triangles, name: str) -> Array | None:
+def _color(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
     layers = mesh.color_attributes
     index = layers.render_color_index
     layer = with_name(layers, name) if name else layers[index] if 0 <= index < len(layers) else None
     return None if layer is None else _layer(triangles, layer)
 
 
-def _layer(triangles: Triangles, layer: Any) -> Array | None:
+def _layer(triangles: Triangles, layer: Any) -> FloatArray | None:
     """Any attribute; colours of bytes are linear light here, as Blender gives them."""
     count = COMPONENTS.get(layer.data_type)
     if count is None:
@@ -122,14 +190,14 @@ def _layer(triangles: Triangles, layer: Any) -> Array | None:
     return None
 
 
-def _generated(mesh: Any, triangles: Triangles) -> Array:
+def _generated(mesh: Any, triangles: Triangles) -> FloatArray:
     middle, size = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
     size = np.where(size != 0.0, size, 1.0)
     unit = (triangles.vertices - middle + size) / (2.0 * size)
     return unit.astype(np.float32)[triangles.corner_vertices]
 
 
-def attribute_component(values: Array, component: int) -> Array:
+def attribute_component(values: FloatArray, component: int) -> FloatArray:
     """A component of numbers (…, c) as programs read it: RGBA, and the mean of RGB; one number is a grey."""
     count = values.shape[-1]
     if component == 4:

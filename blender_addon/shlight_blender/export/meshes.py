@@ -18,11 +18,10 @@ from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
-from .doubled_faces import MOST_TRIANGLES, doubled
-from .expressions import Surroundings
 from .materials import Surface, read_material
-from .mesh_arrays import MeshArrays, complete, flattened, object_arrays
+from .mesh_arrays import MOST_TRIANGLES, MeshArrays, complete, doubled, flattened, object_arrays
 from .mesh_attributes import UV
+from .nodes import Surroundings
 from .textured_meshes import with_even_emission
 
 Matrix = NDArray[np.float64]

@@ -19,13 +19,12 @@ from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Baked, Waiting, bake_world
 from .camera import Eye, View, set_camera
 from .changes import Changes, everything
-from .culling import Culling, culling_of
-from .expressions import Surroundings
-from .image_pixels import TEXTURES
+from .images import TEXTURES
 from .lights import add_lamp
 from .meshes import SceneMeshes
+from .nodes import Surroundings
+from .seen_objects import Culling, culling_of, shares_of_picture
 from .settings import report_unsupported_settings
-from .shares import shares_of_picture
 from .world import Bake, SceneWorld, world_of
 
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on

@@ -27,7 +27,7 @@ from shlight.nodes.mathematics import MATH, VECTOR_MATH, clamp_range, map_range,
 from shlight.nodes.program import Table
 from shlight.nodes.values import clamp, operation
 
-from .expressions import NodeInputs, ReadNode
+from .nodes import NodeInputs, ReadNode
 
 # Number of entries that Cycles reads from ramps and curves.
 TABLE_SIZE = 257

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A frame or a tile of one, as Blender renders it with shlight."""
+"""A scene opened for final renders that write no file but the picture's, and a frame or a tile of one."""
 
 from __future__ import annotations
 
+import re
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,132 @@ from shlight.farm import Rendered
 from shlight.quiet import quiet
 
 from .. import record
-from ..background import leave_plain
-from ..compat import choose_layers
+from ..background import leave_plain, open_scene
+from ..compat import choose_layers, compositing_nodes
 from ..frame import Frame, frame_of
-from ..names import one_line
+from ..names import name_of, one_line
 from ..passes import layer_passes
+from ..running import ENGINE
+from ..worker_process import SceneError
+
+NUMBERS = {"FLOAT": float, "INT": int}
+FLAGS = {"1": True, "true": True, "on": True, "0": False, "false": False, "off": False}
+
+
+def open_for_farm(path: Path) -> Any:
+    """Opens a Blender file, whose own scripts do not run, or runs a script with build_scene()."""
+    bpy.app.handlers.load_post.append(_close_caches)  # Blender evaluates the scene before it returns
+    try:
+        with quiet():
+            scene = open_scene(path)
+    finally:
+        bpy.app.handlers.load_post.remove(_close_caches)
+    bpy.context.window.scene = scene
+    bpy.ops.preferences.addon_enable(module="cycles")  # the pixel filter is one of its settings
+    render = scene.render
+    render.engine = ENGINE
+    render.use_crop_to_border = True
+    render.use_stamp = False
+    render.use_persistent_data = False
+    return scene
+
+
+@bpy.app.handlers.persistent
+def _close_caches(*_: Any) -> None:
+    """Simulations that are not baked write no files; those of fluids cannot be had without."""
+    for modifier in _replayed_fluids().values():
+        modifier.show_viewport = modifier.show_render = False
+    owners = [modifier for seen in bpy.data.objects for modifier in seen.modifiers]
+    owners += [system for seen in bpy.data.objects for system in seen.particle_systems]
+    owners += [scene.rigidbody_world for scene in bpy.data.scenes if scene.rigidbody_world]
+    for owner in owners:
+        cache = getattr(owner, "point_cache", None)
+        if cache is not None and cache.use_disk_cache and not cache.is_baked:
+            cache.use_disk_cache = False
+
+
+def _replayed_fluids() -> dict[str, Any]:
+    """Modifiers by their objects' names."""
+    fluids = [(seen.name, each) for seen in bpy.data.objects for each in seen.modifiers if each.type == "FLUID"]
+    return {
+        name: each
+        for name, each in fluids
+        if each.fluid_type == "DOMAIN" and each.domain_settings.cache_type == "REPLAY"
+    }
+
+
+def closed_to_others(scene: Any) -> list[str]:
+    """Descriptions of the file's post-processing that is not done."""
+    render, left_out = scene.render, []
+    if render.use_compositing and compositing_nodes(scene) is not None:
+        left_out.append("compositing is left out; do it with the files")
+    editor = scene.sequence_editor
+    if render.use_sequencer and (getattr(editor, "strips", None) or getattr(editor, "sequences", None)):
+        left_out.append("the sequencer is left out")
+    left_out += [f"the fluid of '{name}' is left out; it is replayed, and not baked" for name in _replayed_fluids()]
+    return [f"Scene '{name_of(scene)}': {text}" for text in left_out]
+
+
+def apply_settings(scene: Any, settings: Mapping[str, Any]) -> None:
+    """Sets properties by their path from the scene, "shlight.noise_threshold" for instance; ValueError if it cannot."""
+    for path, value in settings.items():
+        owner_path, _, name = path.rpartition(".")
+        try:
+            owner = scene.path_resolve(owner_path) if owner_path else scene
+            rule = owner.bl_rna.properties[name]
+        except (ValueError, KeyError, AttributeError):
+            raise ValueError(f"set: the scene has no property '{path}'") from None
+        if rule.is_readonly or rule.type not in {*NUMBERS, "BOOLEAN", "ENUM", "STRING"}:
+            raise ValueError(f"set: '{path}' cannot be set")
+        setattr(owner, name, _value_of(path, value, rule))
+
+
+def _value_of(path: str, value: Any, rule: Any) -> Any:
+    """What is given as the property wants it."""
+    try:
+        if rule.type in NUMBERS and not getattr(rule, "is_array", False):
+            number = NUMBERS[rule.type](value)
+            if not rule.hard_min <= number <= rule.hard_max:
+                raise ValueError(f"set: {path} must be {rule.hard_min:g} … {rule.hard_max:g}, got {value}")
+            return number
+        if rule.type == "BOOLEAN":
+            return FLAGS[str(value).lower()]
+        if rule.type == "ENUM" and str(value) not in rule.enum_items:
+            raise ValueError(f"set: {path} must be one of {', '.join(rule.enum_items.keys())}, got {value}")
+    except (KeyError, TypeError, ValueError) as error:
+        if str(error).startswith("set: "):
+            raise
+        raise ValueError(f"set: {path} cannot be {value!r}") from None
+    return str(value)
+
+
+def set_size(render: Any, scale: float) -> tuple[int, int]:
+    """Scales the picture; width and height of what is rendered of it."""
+    for axis in ("resolution_x", "resolution_y"):
+        full = getattr(render, axis) * render.resolution_percentage / 100
+        setattr(render, axis, max(4, round(full * scale)))  # Blender has no smaller ones
+    render.resolution_percentage = 100
+    frame = frame_of(render)
+    return frame.width, frame.height
+
+
+def views_of(scene: Any, wanted: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """Names of views or cameras, and what is added to files' names; nothing of a file gets into those as it is."""
+    render = scene.render
+    if render.use_multiview:
+        suffixes = {view.name: view.file_suffix for view in render.views if view.use}
+        chosen = wanted or tuple(suffixes)
+    else:
+        suffixes = {seen.name: f"_{seen.name}" for seen in scene.objects if seen.type == "CAMERA"}
+        chosen = wanted or ("",)
+    for name in chosen:
+        if name and name not in suffixes:
+            raise SceneError(f"there is no view or camera '{name}' in it, but {', '.join(suffixes) or 'none'}")
+    views = tuple((name, re.sub(r"[^\w.-]", "_", suffixes[name]) if name else "") for name in dict.fromkeys(chosen))
+    if len({suffix for _, suffix in views}) < len(views):
+        raise SceneError("views have the same suffix for their files")
+    return views
+
 
 Box = tuple[int, int, int, int]
 

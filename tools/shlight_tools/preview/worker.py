@@ -9,7 +9,7 @@ from typing import Any
 
 from shlight_blender.background import leave_plain, open_scene, set_threads
 from shlight_blender.compare.render import Worker
-from shlight_blender.serving import SceneError, serve
+from shlight_blender.worker_process import SceneError, serve
 
 from .supervision import SceneRequest
 

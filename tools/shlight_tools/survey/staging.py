@@ -11,7 +11,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 from shlight_blender.background import open_blend
-from shlight_blender.serving import SceneError
+from shlight_blender.worker_process import SceneError
 
 VIEW = Vector((1.0, -1.3, 0.8)).normalized()  # from what is seen to the camera
 ROOM = 1.08  # times the distance at which everything just fits

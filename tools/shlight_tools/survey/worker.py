@@ -16,7 +16,7 @@ import bpy
 from shlight_blender.background import few_pixels
 from shlight_blender.compare.reference import SampleTime
 from shlight_blender.compare.render import SEED_SAME_TIME
-from shlight_blender.serving import SceneError
+from shlight_blender.worker_process import SceneError
 
 from ..preview.worker import SceneWorker, serve_with
 from .features import features_of

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pixels of image datablocks as textures of the core, kept from export to export while nothing changes them."""
+"""Pixels of image datablocks: as textures of the core, kept while nothing changes them, and as light.
+
+sRGB and linear colours are read by the core, others as Blender's OpenColorIO has them.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -16,7 +21,58 @@ from shlight import _core, images
 from shlight.nodes.textures import texture_pixels
 
 from ..names import name_of
-from .color_spaces import SRGB, is_known, linear_light, needs_conversion
+
+SRGB = "sRGB"
+# Colour spaces whose numbers are linear light, or not colours.
+LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709"}
+
+
+@cache
+def _configuration() -> str:
+    """The file that names this Blender's colour spaces."""
+    own = Path(bpy.utils.system_resource("DATAFILES")) / "colormanagement" / "config.ocio"
+    return os.environ.get("OCIO") or str(own)
+
+
+def needs_conversion(space: str) -> bool:
+    """True for a space that the core does not read itself."""
+    return space != SRGB and space not in LINEAR_SPACES
+
+
+@cache
+def is_known(space: str) -> bool:
+    """True if pixels of a space can be read as light; others than sRGB and linear ones need OpenImageIO."""
+    if not needs_conversion(space):
+        return True
+    try:
+        import OpenImageIO as oiio
+    except ImportError:
+        return False
+    probe = oiio.ImageBuf(np.zeros((1, 1, 3), dtype=np.float32))
+    return not _converted(probe, space).has_error
+
+
+def linear_light(pixels: NDArray[Any], space: str) -> NDArray[np.float32]:
+    """Pixels (height, width, 1, 3 or 4) of integers for 0 … 1 or floats in a known space, as linear light times alpha.
+
+    Colours are divided by alpha while they are converted, as in Cycles.
+    """
+    import OpenImageIO as oiio
+
+    values = pixels.astype(np.float32)
+    if np.issubdtype(pixels.dtype, np.integer):
+        values /= np.iinfo(pixels.dtype).max
+    if pixels.shape[2] == 1:
+        values = np.repeat(values, 3, axis=2)
+    source = oiio.ImageBuf(np.ascontiguousarray(values))
+    return np.asarray(_converted(source, space).get_pixels(oiio.FLOAT), dtype=np.float32)
+
+
+def _converted(source: Any, space: str) -> Any:
+    import OpenImageIO as oiio
+
+    return oiio.ImageBufAlgo.colorconvert(source, space, "scene_linear", unpremult=True, colorconfig=_configuration())
+
 
 # The colour that Cycles shows for a missing picture.
 MISSING = (1.0, 0.0, 1.0)
@@ -211,3 +267,29 @@ def _with_alpha(pixels: NDArray[Any], *, associate: bool, mode: str) -> NDArray[
     else:
         color = pixels[..., :3] * alpha
     return np.concatenate([color, alpha], axis=2)
+
+
+# The brightest that a half float holds; what is infinite becomes this.
+BRIGHTEST = 65504.0
+
+
+def linear_pixels(image: Any) -> NDArray[np.float32] | None:
+    """Pixels (height, width, 3) with row 0 on top; None for an image without data.
+
+    Blender keeps floats as linear light, whatever their file has; bytes are in the image's colour space.
+    """
+    width, height = image.size
+    if width < 1 or height < 1:
+        return None
+    channels = int(image.channels)
+    flat = np.empty(width * height * channels, dtype=np.float32)
+    image.pixels.foreach_get(flat)
+    pixels = flat.reshape(height, width, channels)[::-1]
+    rgb = pixels[..., :3] if channels >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
+    rgb = np.nan_to_num(rgb, posinf=BRIGHTEST, neginf=-BRIGHTEST)
+    if not image.is_float and channels == 4 and image.alpha_mode == "STRAIGHT":
+        rgb = rgb * pixels[..., 3:]  # before the colour space is undone, as Cycles does
+    space = image.colorspace_settings.name
+    if not image.is_float and space not in LINEAR_SPACES:
+        rgb = linear_light(rgb, space if is_known(space) else SRGB)
+    return np.ascontiguousarray(rgb, dtype=np.float32)
