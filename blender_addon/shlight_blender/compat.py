@@ -343,6 +343,9 @@ def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
         cycles.samples = count
 
 
+# Options of a property with a path that may begin with "//", the folder of the file.
+RELATIVE_PATH = {"PATH_SUPPORTS_BLEND_RELATIVE"} if VERSION >= (4, 5, 0) else set()
+
 FLAT_SHADER = "UNIFORM_COLOR" if IS_BLENDER_4 else "2D_UNIFORM_COLOR"  # of module gpu
 
 

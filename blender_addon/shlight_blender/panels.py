@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -187,6 +188,27 @@ class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):
         layout.prop(context.scene.shlight, "world_width")
 
 
+class SHLIGHT_MATERIAL_PT_measured(EnginePanel, bpy.types.Panel):
+    """The file of a measured BRDF."""
+
+    bl_label = "Measured BRDF"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown if there is a material."""
+        return bool(context.material) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout, settings = with_names_aside(self.layout), context.material.shlight
+        layout.prop(settings, "measured_file")
+        path = bpy.path.abspath(settings.measured_file, library=context.material.library)
+        if path and not Path(path).is_file():
+            layout.label(text="The file is missing; the nodes are drawn", icon="ERROR")
+
+
 class SHLIGHT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
     """Kinds of rays that an object is hidden from; dim where that is not supported."""
 
@@ -307,6 +329,7 @@ CLASSES = (
     *compare_panel.CLASSES,
     *pass_panels.CLASSES,
     SHLIGHT_WORLD_PT_baking,
+    SHLIGHT_MATERIAL_PT_measured,
     SHLIGHT_OBJECT_PT_ray_visibility,
     SHLIGHT_LIGHT_PT_light,
     SHLIGHT_LIGHT_PT_nodes,

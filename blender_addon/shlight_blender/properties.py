@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scene settings of the render engine: `scene.shlight`."""
+"""Settings of the render engine: `scene.shlight`, and `material.shlight`."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import bpy
+
+from .compat import RELATIVE_PATH
 
 HIGHEST_ORDER = 64
 
@@ -142,18 +144,36 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     )
 
 
+class SHLIGHT_MaterialSettings(bpy.types.PropertyGroup):
+    """Settings of a material."""
+
+    measured_file: bpy.props.StringProperty(
+        name="File",
+        description="A measured BRDF, which is drawn in the place of the nodes: a .bin file of UTIA's database or a "
+        ".binary file of MERL's",
+        subtype="FILE_PATH",
+        options=RELATIVE_PATH,
+        update=lambda settings, context: settings.id_data.update_tag(),
+    )
+
+
+CLASSES = {SHLIGHT_SceneSettings: bpy.types.Scene, SHLIGHT_MaterialSettings: bpy.types.Material}
+
+
 def are_registered() -> bool:
     """Whether Blender knows `scene.shlight`."""
     return bool(SHLIGHT_SceneSettings.is_registered)
 
 
 def register() -> None:
-    """Adds `scene.shlight`."""
-    bpy.utils.register_class(SHLIGHT_SceneSettings)
-    bpy.types.Scene.shlight = bpy.props.PointerProperty(type=SHLIGHT_SceneSettings)
+    """Adds the settings."""
+    for settings, owner in CLASSES.items():
+        bpy.utils.register_class(settings)
+        owner.shlight = bpy.props.PointerProperty(type=settings)
 
 
 def unregister() -> None:
-    """Removes `scene.shlight`."""
-    del bpy.types.Scene.shlight
-    bpy.utils.unregister_class(SHLIGHT_SceneSettings)
+    """Removes the settings."""
+    for settings, owner in CLASSES.items():
+        del owner.shlight
+        bpy.utils.unregister_class(settings)

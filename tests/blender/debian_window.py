@@ -70,11 +70,13 @@ def steps():
 
 
 def note_previews():
-    """Notes the mean colour of the previews of two materials."""
-    for color in ((0.8, 0.05, 0.05, 1), (0.05, 0.05, 0.8, 1)):
+    """Notes the mean colour of the previews of materials; a measured one is green."""
+    red, blue = (0.8, 0.05, 0.05, 1), (0.05, 0.05, 0.8, 1)
+    for color, measured in ((red, ""), (blue, ""), (red, str(FOLDER / "green.bin"))):
         material = bpy.data.materials.new("Preview")
         material.use_nodes = True
         material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = color
+        material.shlight.measured_file = measured
         material.asset_mark()
         material.asset_generate_preview()
         while bpy.app.is_job_running("RENDER_PREVIEW") or not any(material.preview.image_pixels_float):

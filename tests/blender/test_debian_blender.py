@@ -239,6 +239,9 @@ def test_window(tmp_path: Path) -> None:
 
     They run beside the window, as with F12, in a world that is baked for the first of them.
     """
+    green = np.zeros((3, 6, 48, 6, 48))  # as in a file of UTIA's database
+    green[1] = 0.8 / np.pi
+    green.tofile(tmp_path / "green.bin")
     code, output = run_in_window(script="debian_window.py", folder=tmp_path, size=(800, 600))
     assert code == 0, output
     assert "Traceback" not in output, output
@@ -258,9 +261,10 @@ def test_window(tmp_path: Path) -> None:
     assert drawn["nodes"]["SHLIGHT"] == drawn["nodes"]["CYCLES"]
     assert "ShaderNodeEmission" not in drawn["nodes"]["BLENDER_WORKBENCH"]
     assert drawn["viewport_updates"] >= 1
-    (red, _, no_blue), (no_red, _, blue) = drawn["previews"]
+    (red, _, no_blue), (no_red, _, blue), (measured_red, measured_green, _) = drawn["previews"]
     assert red > 2 * no_blue
     assert blue > 2 * no_red
+    assert measured_green > 2 * measured_red
     assert drawn["messages"] == [[], []]
     assert drawn["kept"] == [1, 1]
     first, second = (read_exr(tmp_path / f"final_{i}.exr")[..., :3] for i in range(2))

@@ -45,6 +45,7 @@ class Job:
                 "denoise": denoise,
                 "reference_seconds": reference_seconds,
                 "images": _save_copy(context.scene, self.folder),
+                "measured": _measured_files(),
             }
             self._worker = WorkerProcess(command(WORKER), request, self.folder, environment())
         except BaseException as error:
@@ -96,6 +97,14 @@ def _save_copy(scene: Any, folder: Path) -> dict[str, str]:
             each.update_from_editmode()
     bpy.data.libraries.write(str(folder / "scene.blend"), {scene, *bpy.data.texts}, path_remap="ABSOLUTE")
     return save_unsaved_images((image for image in bpy.data.images if image.source in PAINTED_SOURCES), folder)
+
+
+def _measured_files() -> dict[str, str]:
+    """Absolute paths by names of materials; the copy has them as they were given, perhaps relative to the file."""
+    from ..export.materials import measured_path
+
+    own = {name_of(each): measured_path(each) for each in bpy.data.materials if each.library is None}
+    return {name: str(path) for name, path in own.items() if path is not None}
 
 
 def temporary_folder(prefix: str) -> Path:

@@ -39,7 +39,7 @@ GROWTH = 4  # times the samples measured before: further the time cannot be fore
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What a worker renders."""
+    """A scene, and the effort of its reference."""
 
     scene: str  # a file
     samples: int  # of the reference, at most

@@ -236,12 +236,13 @@ def _glows(seen: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class PanelRequest(Request):
-    """What the panel asks for; `scene` is its copy of the file."""
+    """A request of the panel; `scene` is its copy of the file."""
 
     scene_name: str
     view_layer: str
     use_scripts: bool  # of the file
-    images: dict[str, str] = field(default_factory=dict)  # see other_blender.save_unsaved_images
+    images: dict[str, str] = field(default_factory=dict)  # see background.save_unsaved_images
+    measured: dict[str, str] = field(default_factory=dict)  # files by names of materials
 
 
 class PanelWorker(Worker):
@@ -261,6 +262,9 @@ class PanelWorker(Worker):
 
     def _set_up(self) -> None:
         super()._set_up()
+        for material in bpy.data.materials:
+            if path := self._request.measured.get(name_of(material)):
+                material.shlight.measured_file = path
         self._scene.render.use_crop_to_border = True
         if self._request.denoise:
             use_denoiser(self._scene.cycles)  # its absence is said before anything is rendered

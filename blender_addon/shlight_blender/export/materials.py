@@ -5,13 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
+import bpy
 import numpy as np
 
-from shlight import nodes
+from shlight import Bsdf, nodes
 from shlight.nodes import Shader
 from shlight.nodes.rays import Ray, color_on_ray
+from shlight.nodes.shader import BLACK
 
 from ..compat import MATERIALS, aov_name, lets_light_through, uses_nodes
 from ..names import name_of
@@ -46,13 +50,17 @@ def _outputs(tree: Any, groups: tuple[Any, ...] = ()) -> Iterator[tuple[Any, tup
 
 # Albedo of Cycles' surface for objects without material.
 DEFAULT_ALBEDO = 0.8
+MOST_MEASURED = 16  # files of measured BRDFs that are kept in memory
 
 
 @dataclass(frozen=True)
 class Surface:
-    """A material's shader and the light that it gives: RGB, or (2, 3) of front and back, or what varies."""
+    """A material's shader, or what was measured of it, and the light that it gives.
 
-    shader: Shader = field(default_factory=Shader)
+    That is RGB, or (2, 3) of front and back, or what varies.
+    """
+
+    shader: Shader | Bsdf = field(default_factory=Shader)
     emission: RGB = field(default_factory=lambda: np.zeros(3))
     varying: VaryingEmission | None = None
     name: str = "default_surface"  # what Cryptomatte knows it by
@@ -63,7 +71,18 @@ class Surface:
         """The mesh attributes that it reads."""
         given = [] if self.varying is None else self.varying.inputs
         light = [str(index) for source, index, _ in given if source == "attribute"]
-        return list(dict.fromkeys([*self.shader.attribute_names, *light]))
+        own = [] if isinstance(self.shader, Bsdf) else self.shader.attribute_names
+        return list(dict.fromkeys([*own, *light]))
+
+    @property
+    def follows_uvs(self) -> bool:
+        """True if it lies along the UV map for rendering, where the mesh has one."""
+        return isinstance(self.shader, Bsdf) and self.shader.is_anisotropic
+
+    @property
+    def operation_count(self) -> int:
+        """How many operations a hit takes; 0 if its values do not vary."""
+        return 0 if isinstance(self.shader, Bsdf) else self.shader.operation_count
 
     def emits(self) -> bool:
         """True if it may give light."""
@@ -81,8 +100,41 @@ def read_material(material: Any, report: ExportReport, surroundings: Surrounding
     """The surface of a material (None: the default); `report` receives whatever of it is not supported."""
     if material is None:
         return default_surface()
-    surface = _read(material, report, surroundings)
+    surface = _read_measured(material, report, surroundings) or _read(material, report, surroundings)
     return replace(surface, name=name_of(material), pass_index=int(material.pass_index))
+
+
+def measured_path(material: Any) -> Path | None:
+    """The file of a material's measured BRDF; None without one."""
+    given = material.shlight.measured_file
+    return Path(bpy.path.abspath(given, library=material.original.library)) if given else None
+
+
+@lru_cache(MOST_MEASURED)
+def _measured(path: Path, stamp: int) -> Bsdf:
+    """The BRDF of a file that was written at `stamp` [ns]."""
+    return Bsdf.read(path)
+
+
+def _read_measured(material: Any, report: ExportReport, surroundings: Surroundings) -> Surface | None:
+    """The measured surface; None without one, or where its file cannot be read, which is reported."""
+    path, place = measured_path(material), f"Material '{name_of(material)}'"
+    if path is None:
+        return None
+    try:
+        bsdf = _measured(path, path.stat().st_mtime_ns)
+    except FileNotFoundError:
+        report.add(place, f"its measured file '{path}' is missing; its nodes are drawn")
+        return None
+    except (OSError, ValueError) as error:
+        report.add(place, f"its measured file cannot be read ({error}); its nodes are drawn")
+        return None
+    report.add(place, f"it reflects as its measured file '{path.name}' has it, which Cycles does not read")
+    nodes_surface = _read(material, ExportReport(), surroundings)
+    shader = nodes_surface.shader
+    if isinstance(shader, Shader) and (nodes_surface.emits() or shader.aovs or shader.transparency.constant != BLACK):
+        report.add(place, "emission, transparency and AOVs of its nodes are left out beside its measured file")
+    return Surface(bsdf)
 
 
 def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Surface:
@@ -100,7 +152,8 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
     reader = ShaderReader(material, place, report, surroundings, SHADERS)
     shader = with_aovs(reader.shader(output.inputs["Surface"]), reader, material.node_tree)
     if not lets_light_through(material):
-        if shader.transparency.constant != (0.0, 0.0, 0.0) and surroundings.depsgraph.scene.world is not None:
+        graph = surroundings.depsgraph
+        if shader.transparency.constant != BLACK and graph is not None and graph.scene.world is not None:
             text = "its Transparent Shadows are off; it stops all light of the world, part of which passes it in Cycles"
             report.add(place, text, Effect.LIGHT)
         passes = shader.transparency * (1.0 - nodes.rays.shadow_ray())

@@ -155,7 +155,8 @@ class SceneMeshes:
 
     def _attributes(self, surfaces: Sequence[Surface]) -> frozenset[str]:
         """The attributes that a mesh needs for its materials and the passes."""
-        return _attribute_names(surfaces) | ({UV} if self._surroundings.passes.uvs else set())
+        needs_uvs = self._surroundings.passes.uvs or any(surface.follows_uvs for surface in surfaces)
+        return _attribute_names(surfaces) | ({UV} if needs_uvs else set())
 
     def _convert(
         self,
@@ -218,7 +219,7 @@ class SceneMeshes:
     def operations(self) -> dict[str, int]:
         """How many operations a hit takes, by the name of each material whose values vary."""
         surfaces = [own.surface for own in self._surfaces.values()]
-        return {own.name: own.shader.operation_count for own in surfaces if own.shader.operation_count > 0}
+        return {own.name: own.operation_count for own in surfaces if own.operation_count > 0}
 
     def names(self) -> dict[str, set[str]]:
         """The names of all drawn objects, materials and assets."""

@@ -27,7 +27,11 @@ def of_open_scene(path: Path) -> tuple[list[str], list[str]]:
     """The scene's own file and what Blender has read for it; those that are missing. Absolute paths, sorted."""
     import bpy
 
+    from ..export.materials import measured_path
+
     paths = {_absolute(name) for name in bpy.utils.blend_paths(absolute=True)}
+    measured = (measured_path(material) for material in bpy.data.materials)
+    paths.update(_absolute(str(path)) for path in measured if path is not None)
     for image in bpy.data.images:
         if image.source in {"SEQUENCE", "TILED"} and image.filepath:
             paths.discard(named := _absolute(image.filepath, image.library))
@@ -100,13 +104,15 @@ def move_absolute_paths(root: Path) -> None:
     """Paths of the open file that are absolute lead below `root` from now on; relative ones do so anyway."""
     import bpy
 
-    for name in WITH_PATHS:
-        for item in getattr(bpy.data, name, ()):
-            moved = root / item.filepath.lstrip("/")
-            if item.filepath.startswith("/") and not item.filepath.startswith("//") and moved.is_file():
-                item.filepath = str(moved)
-                if name == "libraries":
-                    item.reload()
+    owners = [(item, "filepath") for name in WITH_PATHS for item in getattr(bpy.data, name, ())]
+    owners += [(material.shlight, "measured_file") for material in bpy.data.materials]
+    for owner, name in owners:
+        path = getattr(owner, name)
+        moved = root / path.lstrip("/")
+        if path.startswith("/") and not path.startswith("//") and moved.is_file():
+            setattr(owner, name, str(moved))
+            if isinstance(owner, bpy.types.Library):
+                owner.reload()
 
 
 Box = tuple[int, int, int, int]

@@ -17,7 +17,7 @@ from shlight_blender.worker_process import Stage, WorkerError, WorkerProcess
 
 @dataclass(frozen=True, kw_only=True)
 class SceneRequest(Request):
-    """What the worker of a command line renders; None keeps the scene's value."""
+    """The request of a command line; None keeps the scene's value."""
 
     lights: list[str] | None = None  # names of the lamps that shine
     size: tuple[int, int] | None = None
