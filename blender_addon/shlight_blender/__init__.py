@@ -33,8 +33,9 @@ def register() -> None:
         print(f"shlight: {problem}")
         preferences.register()
         return
-    from . import engine, panels, properties, running
+    from . import engine, properties, running
     from .compare import registration
+    from .ui import panels
 
     if properties.are_registered():
         return
@@ -60,8 +61,9 @@ def unregister() -> None:
     if numpy_problem():
         preferences.unregister()
         return
-    from . import engine, panels, properties
+    from . import engine, properties
     from .compare import registration
+    from .ui import panels
 
     if not properties.are_registered():
         return

@@ -7,8 +7,9 @@ from pathlib import Path
 import bpy
 import nodeitems_utils
 
-from shlight_blender import engine, panels, record
+from shlight_blender import engine, record
 from shlight_blender.export import bake
+from shlight_blender.ui import panels
 
 sys.path.append(str(Path(__file__).parent))
 from debian_steps import FOLDER, start

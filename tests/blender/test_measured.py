@@ -138,7 +138,7 @@ def test_a_comparison_draws_the_same_picture(paper: Any, measured: Path, tmp_pat
 
 
 def test_the_panel_says_where_the_file_is_missing(paper: Any, measured: Path) -> None:
-    from shlight_blender.panels import SHLIGHT_MATERIAL_PT_measured as Panel
+    from shlight_blender.ui.data import SHLIGHT_MATERIAL_PT_measured as Panel
 
     material, lines = bpy.data.materials["Paper"], []
     layout = SimpleNamespace(prop=lambda owner, name: getattr(owner, name), label=lambda text, **_: lines.append(text))

@@ -10,7 +10,8 @@ from typing import Any
 import bpy
 import pytest
 
-from shlight_blender import compat, panels, preferences, presets, report_panel
+from shlight_blender import compat, preferences
+from shlight_blender.ui import data, report, settings
 
 
 class Layout:
@@ -63,16 +64,16 @@ def test_the_panels_of_a_lamp_show_what_makes_its_light(studio: Any, kind: str, 
     light = bpy.data.lights.new(kind, kind)
     switch = compat.shadow_switch(light)
     assert switch is not None
-    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(panels.SHLIGHT_LIGHT_PT_light, light=light).shown
+    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(data.SHLIGHT_LIGHT_PT_light, light=light).shown
     light.use_nodes = True
-    assert "ShaderNodeOutputLight.Surface" in drawn_by(panels.SHLIGHT_LIGHT_PT_nodes, light=light).shown
+    assert "ShaderNodeOutputLight.Surface" in drawn_by(data.SHLIGHT_LIGHT_PT_nodes, light=light).shown
 
 
 def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) -> None:
     studio.camera()
     kinds = {"visible_camera", "visible_diffuse", "visible_glossy"}
     shown = {
-        thing.name: drawn_by(panels.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
+        thing.name: drawn_by(data.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
         for thing in (studio.area(), studio.box(), studio.scene.camera)
     }
     assert shown["Area"].shown == kinds
@@ -83,15 +84,28 @@ def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) 
 
 
 def test_presets_set_what_they_say_and_preview_is_the_default(studio: Any) -> None:
-    settings = studio.scene.shlight
-    assert [name for name in presets.PRESETS if presets.is_set(settings, name)] == ["PREVIEW"]
-    settings.time_limit = 3.0
-    for name in presets.PRESETS:
-        settings.shadow_rays, settings.pixel_samples = 5, 2
-        bpy.ops.shlight.use_preset(preset=name)
-        assert [other for other in presets.PRESETS if presets.is_set(settings, other)] == [name]
-    assert settings.noise_threshold == pytest.approx(0.002)
-    assert settings.time_limit == 3.0
+    chosen, values = studio.scene.shlight, {}
+    for name in ("default", "Preview", "Draft", "Final"):
+        if name != "default":
+            chosen.shadow_rays, chosen.pixel_samples, chosen.time_limit = 5, 2, 3.0
+            file = str(settings.PRESETS / f"{name}.py")
+            bpy.ops.script.execute_preset(filepath=file, menu_idname="SHLIGHT_PT_presets")
+            assert chosen.time_limit == 3.0
+        values[name] = {each: getattr(chosen, each) for each in settings.PRESET_SETTINGS}
+    assert values["Preview"] == values["default"]
+    assert values["Draft"]["noise_threshold"] == pytest.approx(0.05)
+    assert values["Final"]["noise_threshold"] == pytest.approx(0.002)
+
+
+def test_presets_of_the_user_stand_beside_those_of_the_add_on(studio: Any) -> None:
+    listed: list[str] = []
+    panel = settings.SHLIGHT_PT_presets
+    menu = SimpleNamespace(layout=SimpleNamespace(), preset_subdir=panel.preset_subdir, bl_idname=panel.__name__)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bpy.types.Menu, "path_menu", lambda self, paths, operator, **_: listed.extend(paths))
+        panel.path_menu(menu, ["/of/the/user"], panel.preset_operator)
+    assert listed == [str(settings.PRESETS), "/of/the/user"]
+    assert {path.stem for path in settings.PRESETS.glob("*.py")} == {"Draft", "Preview", "Final"}
 
 
 def test_the_report_leads_to_its_places(studio: Any) -> None:
@@ -107,9 +121,9 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
     box.is_shadow_catcher = True
     context = {"scene": studio.scene, "region": SimpleNamespace(width=300)}
     context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # a Blender without a window has 0
-    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
+    assert "Render to see" in drawn_by(report.SHLIGHT_RENDER_PT_report, **context).text
     studio.render("SHLIGHT")
-    shown = drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context)
+    shown = drawn_by(report.SHLIGHT_RENDER_PT_report, **context)
     assert "shadow catchers are not supported" in " ".join(shown.text.split()).lower()
     node = next(place for place in shown.places if "node" in place)
     assert node == "Material 'Odd's', node 'Fluff, 'soft''"
@@ -123,15 +137,15 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
     with pytest.raises(RuntimeError, match="'Gone' is not in this view layer"):
         bpy.ops.shlight.show_place(place="Object 'Gone'")
     studio.scene.name = "Another"
-    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
+    assert "Render to see" in drawn_by(report.SHLIGHT_RENDER_PT_report, **context).text
 
 
 def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
     studio.world()
     context = {"scene": studio.scene, "world": studio.scene.world}
-    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
-    assert "world_width" not in drawn_by(panels.SHLIGHT_RENDER_PT_light, **context).shown
-    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
+    assert drawn_by(data.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
+    assert "world_width" not in drawn_by(settings.SHLIGHT_RENDER_PT_light, **context).shown
+    assert drawn_by(data.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
 
 
 def test_without_the_native_module_the_engine_says_so(

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from shlight_blender import compat, pass_panels, passes
+from shlight_blender import compat, passes
+from shlight_blender.ui import data
 
 oiio = pytest.importorskip("OpenImageIO")
 
@@ -199,6 +200,6 @@ def test_panels_offer_the_passes_that_there_are(studio: Any) -> None:
     view_layer = scene_with_groups(studio)
     for name in ("", "_aov", "_cryptomatte", "_lightgroups"):
         assert "SHLIGHT" in getattr(bpy.types, f"VIEWLAYER_PT_layer_passes{name}").COMPAT_ENGINES
-    offered = {*pass_panels.DATA, *pass_panels.INDEXES, *sum(pass_panels.LIGHT.values(), ()), *pass_panels.OTHER}
+    offered = {*data.DATA, *data.INDEXES, *sum(data.LIGHT.values(), ()), *data.OTHER}
     assert {switch.removeprefix("use_pass_") for switch in passes.PASSES} <= offered
     assert len({own.name for own in passes.layer_passes(studio.scene, view_layer)}) == len(SWITCHES) + 9 + 3 + 1 + 3

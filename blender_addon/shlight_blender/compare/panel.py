@@ -7,10 +7,10 @@ from typing import Any
 
 import bpy
 
-from .. import report_panel
 from ..compat import draw_progress
-from ..engine_panel import EnginePanel, with_names_aside
 from ..names import name_of, one_line
+from ..ui.base import EnginePanel, draw_text, with_names_aside
+from ..ui.report import SHLIGHT_OT_show_place, leads_somewhere
 from . import overlay, results
 from .job import CompareError, Job, session
 from .pictures import light_name
@@ -271,7 +271,7 @@ def _draw_results(layout: Any, context: Any, found: Any) -> None:
     layout.prop(context.window_manager.shlight_compare, "split", slider=True)
     column = layout.column(align=True)
     for line in lines(found.figures):
-        report_panel.draw_text(column, context, line, "BLANK1")
+        draw_text(column, context, line, "BLANK1")
     if not found.figures["differences"]:
         layout.label(text="No difference beyond Cycles' noise", icon="CHECKMARK")
     for number, place in enumerate(found.figures["differences"], start=1):
@@ -297,17 +297,17 @@ def lines(figures: dict[str, Any]) -> list[str]:
 def _draw_place(layout: Any, context: Any, number: int, place: dict[str, Any]) -> None:
     box = layout.box().column(align=True)
     text = f"{number}  {place['place']}: {100 * place['difference']:+.0f} %"
-    if report_panel.leads_somewhere(place["place"]):
-        show = box.operator(report_panel.SHLIGHT_OT_show_place.bl_idname, text=text, icon="RESTRICT_SELECT_OFF")
+    if leads_somewhere(place["place"]):
+        show = box.operator(SHLIGHT_OT_show_place.bl_idname, text=text, icon="RESTRICT_SELECT_OFF")
         show.place = place["place"]
     else:
         box.label(text=text)
     for message in place["messages"]:
-        report_panel.draw_text(box, context, message[:1].upper() + message[1:], "INFO")
+        draw_text(box, context, message[:1].upper() + message[1:], "INFO")
     if not place["messages"]:
         box.label(text="The report names nothing here", icon="BLANK1")
     for message in place["of_light"]:
-        report_panel.draw_text(box, context, message, "LIGHT")
+        draw_text(box, context, message, "LIGHT")
 
 
 CLASSES = (

@@ -13,7 +13,7 @@ from mathutils import Matrix, Vector
 from ..frame import frame_of
 from ..names import name_of
 from ..report import ExportReport
-from ..report_panel import PLACE
+from ..ui.report import PLACE
 
 # Places of the report whose light may fall on everything.
 OF_LIGHT = ("Light '", "World '")

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
-from .running import ENGINE
+from ..running import ENGINE
+
+PIXELS_PER_LETTER = 7.0
 
 
 class EnginePanel:
@@ -27,3 +30,11 @@ def with_names_aside(layout: Any) -> Any:
     layout.use_property_split = True
     layout.use_property_decorate = False
     return layout
+
+
+def draw_text(layout: Any, context: Any, text: str, icon: str) -> None:
+    """Text in lines that fit the region; the icon is before the first of them."""
+    scale = context.preferences.system.ui_scale
+    letters = max(int((context.region.width / scale - 60) / PIXELS_PER_LETTER), 20)
+    for number, line in enumerate(textwrap.wrap(text, letters)):
+        layout.label(text=line, icon="BLANK1" if number else icon)

@@ -4,18 +4,16 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from typing import Any
 
 import bpy
 
-from . import record
-from .engine_panel import EnginePanel
-from .names import name_of, with_name
-from .report import Effect, Message
+from .. import record
+from ..names import name_of, with_name
+from ..report import Effect, Message
+from .base import EnginePanel, draw_text
 
 MOST_PLACES = 4
-PIXELS_PER_LETTER = 7.0
 ICONS = {Effect.DARK: "ERROR", Effect.LIGHT: "ERROR", Effect.THING: "ERROR"}
 PLACE = re.compile(r"(?P<kind>[A-Z][a-z ]+?) '(?P<name>.+?)'(?:, node '(?P<node>.+)')?(?:, .*)?")
 OBJECT_KINDS = {"Object", "Light", "Camera"}
@@ -127,14 +125,6 @@ def _draw_message(layout: Any, context: Any, message: Message) -> None:
             box.label(text=place, icon="BLANK1")
     if len(message.places) > MOST_PLACES:
         box.label(text=f"and {len(message.places) - MOST_PLACES} more", icon="BLANK1")
-
-
-def draw_text(layout: Any, context: Any, text: str, icon: str) -> None:
-    """Text in lines that fit the region; the icon is before the first of them."""
-    scale = context.preferences.system.ui_scale
-    letters = max(int((context.region.width / scale - 60) / PIXELS_PER_LETTER), 20)
-    for number, line in enumerate(textwrap.wrap(text, letters)):
-        layout.label(text=line, icon="BLANK1" if number else icon)
 
 
 CLASSES = (SHLIGHT_OT_show_place, SHLIGHT_RENDER_PT_report, SHLIGHT_RENDER_PT_report_slight)
