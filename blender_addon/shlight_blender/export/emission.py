@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import heapq
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,8 +21,42 @@ Array = NDArray[np.float64]
 Input = tuple[str, int | str, int]
 # Inputs that are opposite on the back of a surface.
 TURNED = ("normal", "geometric_normal", "towards_viewer")
-# Texture coordinates that no picture has count as one of this size.
-NO_PICTURE = (1.0, 1.0)
+
+
+def divided(
+    parts: list[tuple[float, Any]],
+    divide: Callable[[Any], list[tuple[float, Any]]],
+    enough: float,
+    most: int,
+) -> tuple[list[Any], float]:
+    """Parts of something whose emission varies, few and of even light: always the one that deviates most is divided.
+
+    parts: each with its squared deviation times area. divide: the same of a part's own parts; none where there are no
+    smaller ones. It ends where the deviations add up to `enough`, or one division more would make more than `most`
+    parts. Returns the parts, sorted, and what their deviations add up to.
+    """
+    waiting = [(-deviation, part) for deviation, part in parts]
+    heapq.heapify(waiting)
+    done: list[Any] = []
+    left = sum(deviation for deviation, _ in parts)
+    while waiting and left > enough:
+        worst, part = heapq.heappop(waiting)
+        smaller = divide(part) if worst < 0.0 else []
+        if len(waiting) + len(done) + len(smaller) > most:
+            done.append(part)
+            break
+        if not smaller:
+            done.append(part)
+            continue
+        left += worst + sum(deviation for deviation, _ in smaller)
+        for deviation, own in smaller:
+            heapq.heappush(waiting, (-deviation, own))
+    return sorted([*done, *(part for _, part in waiting)]), left
+
+
+def share_of(squares: float, whole: float) -> float:
+    """The root of squared deviations ÷ the squared radiance."""
+    return float(np.sqrt(max(squares, 0.0) / whole)) if whole > 0.0 else 0.0
 
 
 def of_both_sides(radiance: Array) -> Array:

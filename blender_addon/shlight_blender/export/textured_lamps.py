@@ -8,7 +8,6 @@ constant area takes to its disk (Shirley & Chiu 1997).
 
 from __future__ import annotations
 
-import heapq
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -17,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compat import LAMPS
-from .emission import Input, VaryingEmission
+from .emission import Input, VaryingEmission, divided, share_of
 from .nodes import RGB
 
 Array = NDArray[np.float64]
@@ -131,19 +130,16 @@ def cut_square(radiance: Callable[[Array], Array], samples: tuple[int, int], mos
     sums = _Sums(radiance, *samples)
     everything = (0, 0, *samples)
     whole = float(sums.over(everything)[3])
-    left_over = float(_deviation(sums.over(everything), _count(everything)))
-    cells: list[tuple[float, Bounds]] = [(-left_over, everything)]
-    while left_over > TOLERANCE**2 * whole and len(cells) < most and _count(cells[0][1]) > 1:
-        worst, bounds = heapq.heappop(cells)
-        left_over += worst
-        for half in _cut_in_two(sums, bounds):
-            deviation = float(_deviation(sums.over(half), _count(half)))
-            left_over += deviation
-            heapq.heappush(cells, (-deviation, half))
-    found = sorted(bounds for _, bounds in cells)
+
+    def part(bounds: Bounds) -> tuple[float, Bounds]:
+        return float(_deviation(sums.over(bounds), _count(bounds))), bounds
+
+    def halves(bounds: Bounds) -> list[tuple[float, Bounds]]:
+        return [part(half) for half in _cut_in_two(sums, bounds)] if _count(bounds) > 1 else []
+
+    found, left = divided([part(everything)], halves, TOLERANCE**2 * whole, most)
     means = np.array([np.maximum(sums.over(bounds)[:3], 0.0) / _count(bounds) for bounds in found])
-    error = float(np.sqrt(max(left_over, 0.0) / whole)) if whole > 0.0 else 0.0
-    return Cells(np.array(found) / (*samples, *samples), means, error)
+    return Cells(np.array(found) / (*samples, *samples), means, share_of(left, whole))
 
 
 Remark = Callable[[str], None]

@@ -8,7 +8,6 @@ same radiance are one light to the core. Both steps keep the total light.
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -17,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .emission import TURNED, Input, VaryingEmission, of_both_sides
+from .emission import TURNED, Input, VaryingEmission, divided, of_both_sides, share_of
 from .materials import Surface
 from .mesh_arrays import MeshArrays
 from .mesh_attributes import attribute_component
@@ -125,25 +124,18 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
         for triangle, keep, level in zip(uvs, kept, levels, strict=True)
     ]
 
-    def entry(triangle: int, level: int, part: int) -> tuple[float, int, int, int]:
-        return (-area[triangle] / 4.0**level * pyramids[triangle].variance(level, part), triangle, level, part)
+    def part(triangle: int, level: int, number: int) -> tuple[float, tuple[int, int, int]]:
+        return area[triangle] / 4.0**level * pyramids[triangle].variance(level, number), (triangle, level, number)
 
-    open_pieces = [entry(triangle, 0, 0) for triangle in range(len(uvs))]
-    heapq.heapify(open_pieces)
+    def quarters(place: tuple[int, int, int]) -> list[tuple[float, Any]]:
+        triangle, level, number = place
+        if level == kept[triangle]:
+            return []
+        return [part(triangle, level + 1, quarter) for quarter in range(4 * number, 4 * number + 4)]
+
     whole = sum(a * float(pyramid.squares[0][0]) for a, pyramid in zip(area, pyramids, strict=True))
-    left = -sum(piece[0] for piece in open_pieces)
-    done: list[tuple[float, int, int, int]] = []
-    while open_pieces and left > TOLERANCE**2 * whole and len(open_pieces) + len(done) + 3 <= most:
-        worst, triangle, level, part = heapq.heappop(open_pieces)
-        if level == kept[triangle] or worst == 0.0:
-            done.append((worst, triangle, level, part))
-            continue
-        left += worst
-        for quarter in range(4 * part, 4 * part + 4):
-            piece = entry(triangle, level + 1, quarter)
-            left -= piece[0]
-            heapq.heappush(open_pieces, piece)
-    return _gathered(sorted(piece[1:] for piece in done + open_pieces), pyramids, area, _part(left, whole))
+    places, left = divided([part(triangle, 0, 0) for triangle in range(len(uvs))], quarters, TOLERANCE**2 * whole, most)
+    return _gathered(places, pyramids, area, share_of(left, whole))
 
 
 def _gathered(places: list[tuple[int, int, int]], pyramids: list[_Pyramid], area: Array, error: float) -> Pieces:
@@ -156,10 +148,6 @@ def _gathered(places: list[tuple[int, int, int]], pyramids: list[_Pyramid], area
         area[triangles] / 4.0 ** np.array([level for _, level, _ in places]),
         error,
     )
-
-
-def _part(squares: float, whole: float) -> float:
-    return float(np.sqrt(max(squares, 0.0) / whole)) if whole > 0.0 else 0.0
 
 
 class Colors(NamedTuple):
@@ -192,7 +180,7 @@ def share_colors(radiance: Array, area: Array, most: int = MOST_COLORS) -> Color
     color_of = np.full(len(radiance), len(colors))
     color_of[lit] = labels
     black = np.zeros((0 if lit.all() else 1, radiance.shape[1]))
-    return Colors(color_of, np.concatenate([colors, black]), _part(float(squares.sum()), whole))
+    return Colors(color_of, np.concatenate([colors, black]), share_of(float(squares.sum()), whole))
 
 
 def _nearest(values: Array, weights: Array, labels: IntArray, rounds: int = 4) -> IntArray:
