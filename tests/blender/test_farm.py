@@ -163,14 +163,14 @@ bpy.ops.wm.save_as_mainfile(filepath=str(folder / "hostile.blend"))
 HIDE_WHAT_IS_SENT = """
 import os, sys
 from shlight.farm.command import main
-from shlight_blender.farm import needed_files
-pack = needed_files.packed
+from shlight_blender.farm import source
+pack = source.packed
 def pack_and_hide(*arguments):
     archive = pack(*arguments)
     for folder in sys.argv[1:3]:
         os.rename(folder, folder + "_hidden")
     return archive
-needed_files.packed = pack_and_hide
+source.packed = pack_and_hide
 sys.exit(main(sys.argv[3:]))
 """
 
