@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""The pages of docs/tasks show what their code prints, and the pictures that it makes."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+TASKS = Path(__file__).parents[2] / "docs" / "tasks"
+sys.path.insert(0, str(TASKS))
+
+import build  # noqa: E402
+
+NUMBER = re.compile(r"(?<![\w])[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
+PICTURE = re.compile(r"!\[.*?\]\((images/.*?)\)")
+
+
+@pytest.mark.parametrize("page", sorted(TASKS.glob("*.md")), ids=lambda page: page.stem)
+def test_a_page_is_as_its_code_has_it(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("images").mkdir()
+    made, written = build.built(page), page.read_text()
+    assert NUMBER.sub("0", made) == NUMBER.sub("0", written)
+    # Processors round differently, after which a ray may pass an edge that it meets elsewhere.
+    numbers = [np.array(NUMBER.findall(text), dtype=float) for text in (made, written)]
+    np.testing.assert_allclose(*numbers, rtol=0.03, atol=2e-3)
+    for picture in PICTURE.findall(written):
+        assert Path(picture).is_file()
+        assert (TASKS / picture).is_file()
