@@ -7,7 +7,7 @@ from pathlib import Path
 
 import nox
 
-# With the CPython that they exist for and what numpy they bear.
+# Versions of CPython, Blender and numpy that go together.
 BLENDERS = [("3.11", "4.2", "numpy>=1.26,<2"), ("3.11", "5.0", "numpy>=1.26,<2"), ("3.13", "5.2", "numpy>=2")]
 ROOT = Path(__file__).parent
 LAMPS = [f"tests/blender/test_{name}.py" for name in ("light_matrix", "lights_of_instances", "seen_lamps")]

@@ -27,6 +27,7 @@ SHADING_METHODS = methods.shading_methods()
 RANDOM = [name for name, method in COEFFICIENT_METHODS.items() if method.random]
 
 Call = Callable[..., Any]
+Floats = NDArray[np.float64]
 
 
 def caps(**given: Any) -> NDArray[Any]:
@@ -85,6 +86,213 @@ def test_a_tolerance_is_kept() -> None:
         errors.append(np.max(np.abs(rough - exact).max(axis=-1) / exact[:, 0]))
         assert errors[-1] <= tolerance
     assert errors[0] > 10 * errors[1]
+
+
+# Random caps: axes and half angles.
+CapDraw = Callable[[np.random.Generator, int], tuple[Floats, Floats]]
+LOBES = np.array([[0.62439210145170621, 0.56876027650862593, 0.53539354825264152], [0.2450696662018568,
+    -0.96949406431895579, -0.0047029733173043643]])  # fmt: skip  # of tools/methods/lobe_directions.cpp
+DEGREE = np.pi / 180
+
+
+def at_tilt(rng: np.random.Generator, tilt: Any) -> Floats:
+    phi = rng.uniform(0, 2 * np.pi, np.shape(tilt))
+    return np.stack([np.sin(tilt) * np.cos(phi), np.sin(tilt) * np.sin(phi), np.cos(tilt)], axis=-1)
+
+
+def log_uniform(rng: np.random.Generator, low: float, high: float, shape: Any = None) -> Any:
+    return np.exp(rng.uniform(np.log(low), np.log(high), shape))
+
+
+def easy(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
+    """10° and more from tangency, and the centre as far from the horizon."""
+    half = rng.uniform(0.2, 1, 20 * count)
+    tilt = rng.uniform(0, np.pi / 2 + half - 10 * DEGREE)
+    kept = (np.abs(tilt - np.pi / 2) >= 10 * DEGREE) & (np.abs(tilt - np.pi / 2 + half) >= 10 * DEGREE)
+    axes = log_uniform(rng, 0.1, 10, (count, 1)) * at_tilt(rng, tilt[kept][:count])
+    return axes, half[kept][:count]
+
+
+def anywhere(low: float, high: float) -> CapDraw:
+    return lambda rng, count: (at_tilt(rng, np.arccos(rng.uniform(-1, 1, count))), rng.uniform(low, high, count))
+
+
+def at_horizon(low: float, high: float, offset: Callable[..., Any]) -> CapDraw:
+    """The centre `offset` half angles below it."""
+
+    def draw(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
+        half = log_uniform(rng, low, high, count)
+        return at_tilt(rng, np.pi / 2 + half * offset(rng, count)), half
+
+    return draw
+
+
+def along_a_lobe(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
+    """Where the height over a lobe of zonal harmonics is the same all along the edge."""
+    return rng.choice([-1, 1], (count, 1)) * rng.choice(LOBES, count), rng.uniform(0.3, 3, count)
+
+
+def upright(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
+    return rng.choice(np.concatenate([np.eye(3), -np.eye(3)]), count), rng.uniform(0.3, 3, count)
+
+
+def near_tangency(rng: np.random.Generator, count: int) -> Any:
+    return rng.choice([-1, 1], count) * (1 - log_uniform(rng, 1e-7, 1e-2, count))
+
+
+ZONAL: dict[str, CapDraw] = {
+    "easy": easy, "wide": anywhere(0.5 * np.pi, 0.97 * np.pi), "along a lobe": along_a_lobe, "upright": upright,
+}  # fmt: skip
+CAPS: dict[str, CapDraw] = {
+    "anywhere": anywhere(0.05, 1.5),
+    "across the horizon": at_horizon(0.05, 1.5, lambda rng, count: rng.uniform(-1, 1, count)),
+    "near tangency": at_horizon(0.05, 1.4, near_tangency),
+    "axis near the horizon": at_horizon(0.05, 1.5, lambda rng, count: rng.uniform(-1, 1, count) * 1e-6),
+    "small": at_horizon(1e-5, 0.05, lambda rng, count: rng.uniform(-1, 1, count)),
+    "beyond a hemisphere": anywhere(1.6, 3.1),
+}
+
+
+def star(rng: np.random.Generator, center: Floats, normal: Floats, corners: int, inner: float, half: float) -> Floats:
+    """A plane polygon around `center`, whose odd corners are at `inner` of the distance if that is less than 0.4."""
+    u = np.cross(rng.normal(size=3), normal)
+    u /= np.linalg.norm(u)
+    v = np.cross(normal / np.linalg.norm(normal), u)
+    angles = 2 * np.pi * (np.arange(corners) + rng.uniform(0, 0.7, corners)) / corners
+    radii = np.where((np.arange(corners) % 2 == 1) & (inner < 0.4), inner, rng.uniform(0.6, 1, corners))
+    return center + half * (radii * np.cos(angles))[:, None] * u + half * (radii * np.sin(angles))[:, None] * v
+
+
+def facing(corners: int, inner: float, low: float, high: float, turned: float = 0.98) -> Callable[..., Floats]:
+    """Of such half sizes relative to the distance, turned away by up to about 80°."""
+
+    def draw(rng: np.random.Generator) -> Floats:
+        direction = at_tilt(rng, rng.uniform(0, 1.3))
+        way, distance = rng.normal(size=3), log_uniform(rng, 0.1, 10)
+        normal = direction + turned * way / np.linalg.norm(way)
+        return star(rng, distance * direction, normal, corners, inner, distance * log_uniform(rng, low, high))
+
+    return draw
+
+
+def near_contact(rng: np.random.Generator) -> Floats:
+    normal = at_tilt(rng, rng.uniform(0, 1.3))
+    return star(rng, log_uniform(rng, 1e-6, 1e-2) * normal, normal, 5, 0.6, 1.0)
+
+
+def wall(rng: np.random.Generator) -> Floats:
+    """It stands on the horizon's plane."""
+    foot = at_tilt(rng, np.pi / 2) * [1, 1, 0]
+    side = rng.uniform(0.3, 1) * np.cross([0, 0, 1], foot)
+    up = [0, 0, rng.uniform(0.3, 2)]
+    return np.array([foot - side, foot + side, foot + side + up, foot - side + up])
+
+
+EASY_POLYGONS = {"quads": facing(4, 0.6, 0.3, 1, 0.8), "concave": facing(8, 0.3, 0.5, 0.8, 0.0), "walls": wall}
+POLYGONS = {
+    "plain": facing(4, 0.6, 0.01, 1), "concave": facing(8, 0.3, 0.01, 1), "small": facing(3, 0.6, 1e-3, 0.03),
+    "large": facing(5, 0.6, 1, 30), "near contact": near_contact, "walls": wall,
+}  # fmt: skip
+# Bounds at orders, in float64 and in float32.
+CAPS_UP_TO_TEN = {1: (1e-14, 3e-6), 2: (1e-12, 1e-4), 3: (1e-12, 1e-3), 10: (1e-10, 1e-2)}
+POLYGONS_UP_TO_TEN = {1: (1e-13, 3e-5), 2: (1e-11, 3e-3), 3: (1e-11, 3e-3), 10: (1e-11, 1e-2)}
+HIGH = {31: (1e-10, 1e-1), 32: (1e-10, 1e-1)}
+HELD = {4: (1e-12, 1e-5), 9: (1e-12, 1e-5), 16: (1e-12, 1e-5)}
+AGAINST_REFERENCE = [
+    *(("zhou_wei", name, draw, CAPS_UP_TO_TEN | HIGH) for name, draw in ZONAL.items()),
+    *(("snyder", name, draw, CAPS_UP_TO_TEN) for name, draw in ZONAL.items()),
+    *(("wang_ramamoorthi", name, draw, POLYGONS_UP_TO_TEN | HIGH) for name, draw in EASY_POLYGONS.items()),
+    *(("quadrature", name, draw, HELD) for name, draw in (CAPS | POLYGONS).items() if name != "near tangency"),
+    # Preparing a light in double loses digits if the gap between its rim and the horizon is 1e-7: 2^-52 ÷ 1e-7 × order.
+    ("quadrature", "near tangency", CAPS["near tangency"], dict.fromkeys(HELD, (4e-8, 1e-5))),
+]
+
+
+def error_of(method: str, lights: list[Any], order: int, dtype: Any, *, clip: bool = True, **options: Any) -> Floats:
+    """Of caps or of a polygon, as the type has them: the largest over all coefficients, relative to L_00."""
+    function = shlight.cap_coefficients if len(lights) == 2 else shlight.polygon_coefficients
+    rounded = [np.asarray(array, dtype) for array in lights]
+    exact = function(*(array.astype(float) for array in rounded), order, method="reference", clip=clip)
+    errors = np.abs(function(*rounded, order, method=method, dtype=dtype, clip=clip, **options) - exact).max(axis=-1)
+    return np.asarray(np.divide(errors, exact[..., 0], out=np.zeros_like(errors), where=errors > 0))
+
+
+@pytest.mark.parametrize(("method", "name", "draw", "bounds"), AGAINST_REFERENCE)
+def test_random_lights_against_the_reference(method: str, name: str, draw: Any, bounds: dict[int, Any]) -> None:
+    rng = np.random.default_rng(700)
+    batches = [[draw(rng)] for _ in range(12)] if name in EASY_POLYGONS | POLYGONS else [draw(rng, 12), draw(rng, 12)]
+    if name == "concave" and method == "wang_ramamoorthi":
+        batches = [[draw(rng)[::-1]] for _ in range(12)]  # wound the other way
+    for i, lights in enumerate(batches):
+        for order, per_type in bounds.items():
+            for dtype, bound in zip((np.float64, np.float32), per_type, strict=True):
+                errors = error_of(method, list(lights), order, dtype, clip=i % 4 != 1)
+                assert (errors <= bound).all(), (order, dtype, errors)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-8])
+def test_quadrature_keeps_its_tolerance(tolerance: float) -> None:
+    rng = np.random.default_rng(1)
+    for order in (2, 6, 12):
+        for lights in ([POLYGONS["plain"](rng)], list(CAPS["across the horizon"](rng, 12))):
+            assert (error_of("quadrature", lights, order, np.float64, tolerance=tolerance) <= tolerance).all()
+
+
+def test_quadrature_knows_spheres_in_contact_and_the_whole_sphere() -> None:
+    center = np.array([0.36, 0.48, 0.8])  # of length 1
+    for gap in (0.0, 1e-9, 1e-3):
+        given = {"centers": center, "radii": 1 - gap, "order": 8, "dtype": np.float64}
+        exact = shlight.sphere_coefficients(**given, method="reference")
+        np.testing.assert_allclose(shlight.sphere_coefficients(**given, method="quadrature"), exact, atol=1e-12)
+    whole = shlight.cap_coefficients([0, 0, 1], np.pi, 8, method="quadrature", dtype=np.float64, clip=False)
+    np.testing.assert_allclose(whole, [np.sqrt(4 * np.pi), *[0] * 63], atol=1e-13)
+
+
+@pytest.mark.parametrize("method", ["wang_ramamoorthi", "zhou_wei", "snyder"])
+def test_zonal_methods_see_nothing_below_the_horizon_or_edge_on(method: str) -> None:
+    if method == "wang_ramamoorthi":
+        for vertices in ([[1, 0, -1], [0, 1, -1], [-1, -1, -1]], [[1, 0, 0], [2, 0, 0], [2, 0, 1]],
+                         [[1, 0, 1], [2, 0, 1], [1, 0, 1]], [[1, 0, 0], [2, 0, 1], [3, 0, 0]]):  # fmt: skip
+            assert not shlight.polygon_coefficients(vertices, 8, method=method, dtype=np.float64).any()
+    else:
+        below = [[0, 0, -1], [0.2, 0.1, -0.7]]
+        assert not shlight.cap_coefficients(below, 0.5, 8, method=method, dtype=np.float64).any()
+
+
+@pytest.mark.parametrize(("order", "loss"), [(8, 0.03), (16, 0.1)])
+def test_zonal_methods_lose_in_float32_where_the_edge_cancels(order: int, loss: float) -> None:
+    """For half of these lights; the library's own keep 1e-4 for all."""
+    rng = np.random.default_rng(720)
+    whole = at_tilt(rng, rng.uniform(0, 1.5, 40)), log_uniform(rng, 1e-3, 1e-2, 40)
+    cut = at_horizon(1e-3, 1e-2, lambda rng, count: rng.uniform(-0.8, 0.8, count))(rng, 40)
+    setting = at_horizon(0.02, 0.05, lambda rng, count: rng.uniform(0.8, 0.99, count))(rng, 40)
+    for lights, least in ((whole, loss), (cut, loss), (setting, loss / 10)):
+        assert np.median(error_of("zhou_wei", list(lights), order, np.float32)) >= least
+        assert error_of("exact", list(lights), order, np.float32).max() <= 1e-4
+
+
+@pytest.mark.parametrize("clip", [True, False])
+@pytest.mark.parametrize("sampling", ["solid_angle", "area"])
+def test_monte_carlo_is_unbiased(clip: bool, sampling: Any) -> None:
+    """Means over many lights of a batch, which differ in their random numbers, within five standard errors."""
+    axis = np.array([0.5, -0.3, 0.2])
+    tiny = [[0.5, -0.3, 2e-6], [0.50001, -0.3, -3e-6], [0.5, -0.29999, 7e-6]]
+    quad = [[-0.2, 0.5, -0.3], [0.9, 0.5, -0.2], [0.9, 0.6, 0.9], [-0.2, 0.6, 0.8]]
+    concave = [[-0.5, 0.5, 1], [0, 0.1, 1], [0.5, 0.5, 1], [0, -0.5, 1]]
+    radii = np.sin([1e-5, 0.7]) * np.linalg.norm(axis)
+    kinds: list[tuple[Any, ...]] = [
+        *((shlight.cap_coefficients, axis, half) for half in (1e-5, 0.7, *([2.5] if sampling != "area" else []))),
+        *((shlight.sphere_coefficients, axis, radius) for radius in radii),
+        *((shlight.polygon_coefficients, vertices) for vertices in (quad, tiny, concave)),
+    ]
+    for function, first, *rest in kinds:
+        exact = function(first, *rest, 4, method="reference", dtype=np.float64, clip=clip)
+        batch = np.broadcast_to(first, (400, *np.shape(first)))
+        options = {"method": "monte_carlo", "sampling": sampling, "samples": 64, "seed": 3}
+        found = function(batch, *rest, 4, dtype=np.float64, clip=clip, **options)
+        error = found.std(axis=0, ddof=1) / np.sqrt(400)
+        assert (np.abs(found.mean(axis=0) - exact) <= 5 * error + 1e-9 * exact[0]).all(), (function, rest)
+        assert (error <= 0.2 * exact[0]).all()
 
 
 @pytest.mark.parametrize("name", RANDOM)

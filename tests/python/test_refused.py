@@ -45,7 +45,7 @@ def placed(x: float, y: float, z: float) -> Any:
     return matrix
 
 
-# What an argument must not be, in every call that has it unless "call.argument" says something else.
+# These values must be refused in every call that has an argument of the name; "call.argument" replaces them for one.
 REFUSED: dict[str, tuple[Any, ...]] = {
     "albedo": NO_COLOR,
     "Bsdf.oren_nayar.albedo": ("red", [0.1, 0.2]),  # a program, which clamps numbers, as principled does
@@ -170,7 +170,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "width": (0, -1, 10**12),
     "wo": NO_DIRECTION,
 }
-# What together with other arguments is refused: the call, what changes, and the name.
+# A call, the arguments that are changed together, and the name by which they are refused.
 TOGETHER: list[tuple[str, dict[str, Any], str]] = [
     ("Scene.set_camera", {"aperture_size": 1.0, "aperture_ratio": 1e-11}, "aperture_size"),
     ("Scene.add_sun_light", {"angle": 3.1, "tangent": True}, "angle"),
@@ -196,7 +196,7 @@ TOGETHER: list[tuple[str, dict[str, Any], str]] = [
     ("cap_coefficients/random", {"sampling": "mis"}, "sampling"),
     ("shade_spheres/quadrature", {"bsdf": Bsdf.ggx(0, 1)}, "bsdf"),
     ("shade_spheres/plain_harmonics", {"order": "auto"}, "order"),
-    # What a method does not know.
+    # A method refuses arguments that it does not know.
     *(
         (call, {name: value}, name)
         for call, names in UNKNOWN.items()
