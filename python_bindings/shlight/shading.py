@@ -17,6 +17,7 @@ from shlight import _core
 from shlight._arrays import (
     Floats,
     broadcast,
+    check_finite,
     check_last,
     checked_array,
     checked_disks,
@@ -269,8 +270,7 @@ def _checked_azimuths(phi_o: ArrayLike | None, bsdf: _core.Bsdf, method: str) ->
     if bsdf.is_anisotropic and method != "auto":
         raise ValueError(f"method must be 'auto' for an anisotropic bsdf, got {method!r}")
     phi = np.zeros(()) if phi_o is None else checked_array("phi_o", phi_o, np.float64)
-    if not np.isfinite(phi).all():
-        raise ValueError("phi_o must be finite")
+    check_finite("phi_o", phi)
     return phi
 
 
