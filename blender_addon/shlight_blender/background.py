@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import register as register_addon
-from .compat import set_sample_range
+from .compat import pixels_of, set_sample_range
 from .names import name_of
 from .worker_process import SceneError
 
@@ -48,10 +48,8 @@ def save_unsaved_images(images: Iterable[Any], folder: Path) -> dict[str, str]:
     """Names of the images whose changes are in no file, and of the files in `folder` with their pixels."""
     files = {}
     for number, image in enumerate(image for image in images if image.is_dirty):
-        pixels = np.empty(len(image.pixels), dtype=np.float32)
-        image.pixels.foreach_get(pixels)
         files[image.name] = f"image_{number}.npy"
-        np.save(folder / files[image.name], pixels)
+        np.save(folder / files[image.name], pixels_of(image)[::-1].ravel())
     return files
 
 
@@ -183,8 +181,6 @@ def last_picture(scene: Any, path: Path) -> npt.NDArray[np.float32]:
     """The picture of the last render (height, width, 4), row 0 on top, by way of a file: Blender knows no other."""
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)
     image = bpy.data.images.load(str(path), check_existing=False)
-    width, height = image.size
-    pixels = np.empty(width * height * 4, dtype=np.float32)
-    image.pixels.foreach_get(pixels)
+    pixels = np.ascontiguousarray(pixels_of(image))
     bpy.data.images.remove(image)
-    return np.ascontiguousarray(pixels.reshape(height, width, 4)[::-1])
+    return pixels

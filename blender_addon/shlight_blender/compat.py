@@ -284,6 +284,14 @@ def values_of(collection: Any, name: str, dtype: Any, size: int = 1) -> NDArray[
     return values.reshape(-1, size) if size > 1 else values
 
 
+def pixels_of(image: Any) -> NDArray[np.float32]:
+    """Pixels of an image as Blender keeps them (height, width, channels), row 0 on top."""
+    width, height = image.size
+    values = np.empty(len(image.pixels), dtype=np.float32)
+    image.pixels.foreach_get(values)
+    return values.reshape(height, width, -1)[::-1] if len(values) else np.empty((height, width, 0), np.float32)
+
+
 def uv_coordinates(layer: Any) -> NDArray[np.float32]:
     """Coordinates (corners, 2) of a UV map, handed over at once where they are an attribute's, which is since 3.5."""
     if hasattr(layer, "uv"):

@@ -15,7 +15,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..compat import working_space
+from ..compat import pixels_of, working_space
 
 # Nodes whose values come from elsewhere than the node tree.
 NODES_OF_ELSEWHERE = {"ATTRIBUTE", "SCRIPT"}
@@ -128,10 +128,8 @@ class _Reader:
             raise _UnknownError
         self._struct(image)
         if image.is_dirty:
-            pixels = np.empty(len(image.pixels), dtype=np.float32)
-            image.pixels.foreach_get(pixels)
             self.add("pixels", (*image.size, image.channels, image.is_float))
-            self.digest.update(pixels.tobytes())
+            self.digest.update(pixels_of(image).tobytes())
         elif image.packed_file is not None:
             self.digest.update(image.packed_file.data)
         elif image.source == "FILE":

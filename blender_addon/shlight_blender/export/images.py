@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from shlight import _core, images
 from shlight.nodes.textures import texture_pixels
 
+from ..compat import pixels_of
 from ..names import name_of
 
 SRGB = "sRGB"
@@ -232,11 +233,7 @@ def _stamp(image: Any) -> tuple[Any, ...]:
 
 def _pixels(image: Any) -> NDArray[Any]:
     """(height, width, channels) of uint8 or float32, row 0 on top."""
-    width, height = image.size
-    channels = int(image.channels)
-    flat = np.empty(width * height * channels, dtype=np.float32)
-    image.pixels.foreach_get(flat)
-    pixels: NDArray[Any] = flat.reshape(height, width, channels)[::-1]
+    pixels: NDArray[Any] = pixels_of(image)
     if not image.is_float:
         pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
     return _with_alpha(pixels, associate=associates_alpha(image) and not image.is_float, mode=image.alpha_mode)
@@ -281,10 +278,8 @@ def linear_pixels(image: Any) -> NDArray[np.float32] | None:
     width, height = image.size
     if width < 1 or height < 1:
         return None
-    channels = int(image.channels)
-    flat = np.empty(width * height * channels, dtype=np.float32)
-    image.pixels.foreach_get(flat)
-    pixels = flat.reshape(height, width, channels)[::-1]
+    pixels = pixels_of(image)
+    channels = pixels.shape[2]
     rgb = pixels[..., :3] if channels >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
     rgb = np.nan_to_num(rgb, posinf=BRIGHTEST, neginf=-BRIGHTEST)
     if not image.is_float and channels == 4 and image.alpha_mode == "STRAIGHT":
