@@ -149,25 +149,16 @@ PASSES: dict[str, tuple[str, str, str, str]] = {
     "use_pass_uv": ("UV", "UVA", "VECTOR", "uv"),
     "use_pass_object_index": (_pass_name("Object Index", "IndexOB"), "X", "VALUE", "object_index"),
     "use_pass_material_index": (_pass_name("Material Index", "IndexMA"), "X", "VALUE", "material_index"),
-    "use_pass_diffuse_direct": (_pass_name("Diffuse Direct", "DiffDir"), "RGB", "COLOR", "diffuse_direct"),
-    "use_pass_diffuse_indirect": (_pass_name("Diffuse Indirect", "DiffInd"), "RGB", "COLOR", "diffuse_indirect"),
-    "use_pass_diffuse_color": (_pass_name("Diffuse Color", "DiffCol"), "RGB", "COLOR", "diffuse_color"),
-    "use_pass_glossy_direct": (_pass_name("Glossy Direct", "GlossDir"), "RGB", "COLOR", "glossy_direct"),
-    "use_pass_glossy_indirect": (_pass_name("Glossy Indirect", "GlossInd"), "RGB", "COLOR", "glossy_indirect"),
-    "use_pass_glossy_color": (_pass_name("Glossy Color", "GlossCol"), "RGB", "COLOR", "glossy_color"),
-    "use_pass_transmission_direct": (
-        _pass_name("Transmission Direct", "TransDir"),
-        "RGB",
-        "COLOR",
-        "transmission_direct",
-    ),
-    "use_pass_transmission_indirect": (
-        _pass_name("Transmission Indirect", "TransInd"),
-        "RGB",
-        "COLOR",
-        "transmission_indirect",
-    ),
-    "use_pass_transmission_color": (_pass_name("Transmission Color", "TransCol"), "RGB", "COLOR", "transmission_color"),
+    **{
+        f"use_pass_{light}_{part}": (
+            _pass_name(f"{light} {part}".title(), short + short_part),
+            "RGB",
+            "COLOR",
+            f"{light}_{part}",
+        )
+        for light, short in {"diffuse": "Diff", "glossy": "Gloss", "transmission": "Trans"}.items()
+        for part, short_part in {"direct": "Dir", "indirect": "Ind", "color": "Col"}.items()
+    },
     "use_pass_emit": (_pass_name("Emission", "Emit"), "RGB", "COLOR", "emission"),
     "use_pass_environment": (_pass_name("Environment", "Env"), "RGB", "COLOR", "environment"),
 }
