@@ -25,7 +25,6 @@ from shlight._core import (  # noqa: E402
     RenderReport,
     Scene,
     SceneMesh,
-    View,
 )
 from shlight.cameras import look_at  # noqa: E402
 from shlight.coefficients import (  # noqa: E402
@@ -44,7 +43,7 @@ from shlight.queries import Hits, shading_frames  # noqa: E402
 from shlight.rendering import RenderResult, render  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
-for _kind in (Bsdf, Light, Scene, SceneMesh, View):
+for _kind in (Bsdf, Light, Scene, SceneMesh):
     explain_methods(_kind)
 
 if TYPE_CHECKING:
@@ -77,7 +76,6 @@ __all__ = [
     "RenderResult",
     "Scene",
     "SceneMesh",
-    "View",
     "cap_coefficients",
     "contract",
     "denoise",

@@ -106,18 +106,6 @@ def check_last(name: str, array: Floats, size: int) -> None:
         raise ValueError(f"{name} must have shape (..., {size}), got {array.shape}")
 
 
-def check_rows(name: str, good: NDArray[np.bool_], wrong: str) -> None:
-    """Raises ValueError naming the first row that is not good, and what is wrong with it."""
-    if not good.all():
-        row = np.unravel_index(int(np.argmin(good)), good.shape)
-        raise ValueError(f"{name}{list(map(int, row)) if row else ''} {wrong}")
-
-
-def check_finite(name: str, array: Floats, core_axes: int = 0) -> None:
-    """Raises ValueError naming the first row, which has so many axes, with a number that is not finite."""
-    check_rows(name, np.isfinite(array).all(axis=tuple(range(array.ndim - core_axes, array.ndim))), "must be finite")
-
-
 def checked_disks(
     centers: ArrayLike, half_axes_u: ArrayLike, half_axes_v: ArrayLike, dtype: DTypeLike
 ) -> tuple[Floats, Floats, Floats]:

@@ -30,6 +30,7 @@ _CORE_AXES = {
     "material": 1,
     "cos_theta_o": 0,
     "phi_o": 0,
+    "irradiance": 1,
     "eye": 1,
     "target": 1,
     "up": 1,

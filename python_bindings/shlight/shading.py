@@ -17,7 +17,6 @@ from shlight import _core
 from shlight._arrays import (
     Floats,
     broadcast,
-    check_finite,
     check_last,
     checked_array,
     checked_disks,
@@ -270,7 +269,8 @@ def _checked_azimuths(phi_o: ArrayLike | None, bsdf: _core.Bsdf, method: str) ->
     if bsdf.is_anisotropic and method != "auto":
         raise ValueError(f"method must be 'auto' for an anisotropic bsdf, got {method!r}")
     phi = np.zeros(()) if phi_o is None else checked_array("phi_o", phi_o, np.float64)
-    check_finite("phi_o", phi)
+    if not np.isfinite(phi).all():
+        raise ValueError("phi_o must be finite")
     return phi
 
 

@@ -228,7 +228,7 @@ def fresnel_of(cosine: Value, ior: Value) -> Value:
 
 
 def _own_normal(inputs: NodeInputs) -> Vector:
-    return inputs.linked_vector("Normal", nodes.normal())
+    return inputs.vector_or("Normal", nodes.normal())
 
 
 def _fresnel(inputs: NodeInputs) -> Value:

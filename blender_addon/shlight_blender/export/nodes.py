@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,12 +156,12 @@ class NodeInputs:
         socket = self.socket(name)
         return number(0.0) if socket is None else self.reader.expression(socket, self.groups)
 
-    @overload
-    def linked_vector(self, name: str | int) -> Vector | None: ...
-    @overload
-    def linked_vector(self, name: str | int, default: Vector) -> Vector: ...
-    def linked_vector(self, name: str | int, default: Vector | None = None) -> Vector | None:
-        """An input as a vector if another node makes it, else the default; None: what the node takes in its place."""
+    def linked_vector(self, name: str | int) -> Vector | None:
+        """An input as a vector if another node makes it, else None: what the node itself takes in its place."""
+        return self.vector(name) if self.is_linked(name) else None
+
+    def vector_or(self, name: str | int, default: Vector) -> Vector:
+        """An input as a vector if another node makes it, else the default."""
         return self.vector(name) if self.is_linked(name) else default
 
     def number(self, name: str | int) -> Value:

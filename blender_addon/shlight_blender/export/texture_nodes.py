@@ -115,7 +115,7 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
     if textures is None:
         found: Color = Color(*MISSING)
     else:
-        place = inputs.linked_vector("Vector", nodes.uv(""))
+        place = inputs.vector_or("Vector", nodes.uv(""))
         found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
@@ -126,7 +126,7 @@ def environment_texture(inputs: NodeInputs) -> Color:
     textures = None if node.image is None else _textures(inputs, node.image)
     if textures is None:
         return Color(*MISSING)
-    direction = normalize(inputs.linked_vector("Vector", nodes.position()))
+    direction = normalize(inputs.vector_or("Vector", nodes.position()))
     if node.projection == "MIRROR_BALL":
         return _lookup(inputs, textures, _on_mirror_ball(direction))
     x, y, z = direction
@@ -287,7 +287,7 @@ def _blackbody(inputs: NodeInputs) -> Expression:
 
 
 def _checker(inputs: NodeInputs) -> Expression:
-    place = inputs.linked_vector("Vector", nodes.attribute(GENERATED))
+    place = inputs.vector_or("Vector", nodes.attribute(GENERATED))
     floors = [
         operation("modulo", abs(operation("floor", (c * inputs.number("Scale") + 1e-6) * 0.999999)), 2.0) for c in place
     ]
@@ -299,7 +299,7 @@ def _checker(inputs: NodeInputs) -> Expression:
 
 
 def _gradient(inputs: NodeInputs) -> Expression:
-    place = inputs.linked_vector("Vector", nodes.attribute(GENERATED))
+    place = inputs.vector_or("Vector", nodes.attribute(GENERATED))
     x, y, _ = place
     kind = inputs.node.gradient_type
     if kind == "RADIAL":

@@ -24,8 +24,6 @@ struct LightTraits {
     bool seen_by_camera = false;  ///< camera rays that meet it gain its radiance; it hides nothing
     bool is_surface = false;      ///< rays meet it as a surface of a mesh
     std::uint32_t group = 0;      ///< light group, whose light a render can output separately; 0: none
-
-    bool operator==(const LightTraits&) const = default;
 };
 
 /// A sphere, or a disk that always faces the shading point: caps of half angle asin(R/d) and atan(R/d).
@@ -35,8 +33,6 @@ struct SphereLight {
     Rgb radiance;
     bool facing_disk;
     LightTraits traits = {};
-
-    bool operator==(const SphereLight&) const = default;
 };
 
 /// A planar polygon. One-sided ones shine to the side from which the vertices run counter-clockwise.
@@ -51,8 +47,6 @@ struct PolygonLight {
     double error;    ///< bound of the distance between this plane and the mesh face that rays in float meet
     bool rectangle;  ///< four vertices and right angles
     LightTraits traits = {};
-
-    bool operator==(const PolygonLight&) const = default;
 };
 
 /// A disk or an ellipse: center + a half_axis_u + b half_axis_v, a² + b² ≤ 1, with any two conjugate half axes.
@@ -65,8 +59,6 @@ struct DiskLight {
     double radius;  ///< long half axis
     double error;   ///< see PolygonLight
     LightTraits traits = {};
-
-    bool operator==(const DiskLight&) const = default;
 };
 
 /// A cap of directions: a disk infinitely far away.
@@ -75,8 +67,6 @@ struct SunLight {
     double half_angle;  ///< [rad], 0 < half_angle ≤ π/2
     Rgb radiance;
     LightTraits traits = {};
-
-    bool operator==(const SunLight&) const = default;
 };
 
 /// A sphere light in the limit of radius 0.
@@ -84,8 +74,6 @@ struct PointSource {
     Vec3d position;
     Rgb intensity;  ///< [W sr⁻¹]
     LightTraits traits = {};
-
-    bool operator==(const PointSource&) const = default;
 };
 
 /// A sun in the limit of angle 0.
@@ -93,8 +81,6 @@ struct ParallelSource {
     Vec3d direction;  ///< unit, towards it
     Rgb irradiance;   ///< [W m⁻²] on a perpendicular surface
     LightTraits traits = {};
-
-    bool operator==(const ParallelSource&) const = default;
 };
 
 struct EmitterLevels;
@@ -111,8 +97,6 @@ struct MeshLight {
     LightTraits traits = {};
     FaceSide side = FaceSide::both;      ///< that shines; of `shape` it is the outer one
     glm::dmat3 to_mesh = glm::dmat3(1);  ///< from the world to the mesh's frame
-
-    bool operator==(const MeshLight&) const = default;
 
     /// Whether it is what a ray in this direction meets, on a side that shines.
     bool shines_at(const RayHit& hit, const Vec3f& direction) const;

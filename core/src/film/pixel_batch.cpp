@@ -129,7 +129,8 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       previews(preview_points),
       filter_places(pixel_points.size()),
       takes_differences(std::any_of(s.materials().begin(), s.materials().end(), shlight::takes_differences)),
-      lighting(s, lobes_of_materials(s.materials(), r.order, r.tolerance, stopped), r.order, r.tolerance) {
+      lighting(s.lights(), s.extended_light_count(), s.environment(), s.environment_group(),
+               lobes_of_materials(s.materials(), r.order, r.tolerance, stopped), r.order, r.tolerance) {
     std::transform(pixel_points.begin(), pixel_points.end(), filter_places.begin(), [&](const glm::dvec2& point) {
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });
@@ -183,7 +184,7 @@ PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
                      std::span<PixelSums> sums, std::span<double> pass_sums) {
     StageClock clock(report_);
-    trace(pixels, samples, hits_, ray_light_);
+    trace_camera_rays(pixels, samples);
     if (surface_passes_.any_mean()) {
         surface_passes_.add(surfaces_, rays_.size(), samples.count, pass_sums);
     }
@@ -209,7 +210,7 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
 
 Pilot PixelBatch::pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
     const SampleRange first = {0, 1, shadow_rays, 0};
-    trace(pixels, first, hits_, ray_light_);
+    trace_camera_rays(pixels, first);
     lighting_.add(pixel_seeds_, penumbrae_, first, hits_, report_);
     Pilot pilot;
     for (const Rgb& radiance : hits_.radiance) {
@@ -230,8 +231,7 @@ PixelBatch::LensPoint PixelBatch::lens_point(std::uint32_t sample, std::uint32_t
                : std::nullopt;
 }
 
-void PixelBatch::trace(std::span<const Pixel> pixels, const SampleRange& samples, Hits& hits,
-                       std::vector<RayLight>& light) {
+void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
     rays_.clear();
     neighbours_.clear();
     seed_pixels(pixels);
@@ -244,7 +244,7 @@ void PixelBatch::trace(std::span<const Pixel> pixels, const SampleRange& samples
             add_ray(middle + picture_->filter_places[i], lens_point(i, pixel_seeds_[p]), i, pixel_seeds_[p], step);
         }
     }
-    surfaces_.trace(rays_, neighbours_, samples.count, hits, light);
+    surfaces_.trace(rays_, neighbours_, samples.count, hits_, ray_light_);
     report_.hits += surfaces_.hit_count();
     report_.mirror_count += surfaces_.mirror_count();
 }

@@ -13,24 +13,11 @@ void ShadowBudget::start(const ShadingPoints& points, std::span<const Unshadowed
     const std::size_t groups = points.pixel_begin.size() - 1;
     all_.assign(groups, 0.0F);
     own_.assign(lights.size() * groups, 0.0F);
-    weights_.resize(points.size() * lobe_stride_);
-    for (std::size_t point = 0; point < points.size(); ++point) {
-        const auto hits = static_cast<float>(points.hit_count(point));
-        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-            weights_[lobe * points.size() + point] = hits * glm::abs(points.weight(point, lobe));
-        }
-    }
     for (std::size_t light = 0; light < lights.size(); ++light) {
-        const LightRadiance& radiance = lights[light].smooth;
-        const bool is_even = lights[light].environment == nullptr && radiance.strengths.empty();
-        const Rgb strength = glm::abs(radiance.strength);
         for (std::size_t group = 0; group < groups; ++group) {
             float& own = own_[light * groups + group];
             for (std::size_t point = points.pixel_begin[group]; point < points.pixel_begin[group + 1]; ++point) {
-                for (std::size_t i = point; is_even && i < weights_.size(); i += points.size()) {
-                    own += std::abs(radiance.values[i]) * glm::dot(strength, weights_[i]);
-                }
-                own += is_even ? 0 : of_point(lights[light], point);
+                own += of_point(lights[light], point);
             }
             all_[group] += own;
         }

@@ -51,9 +51,8 @@ class ShadowBudget {
     std::size_t lobe_stride_;
     const ShadingPoints* points_ = nullptr;
     std::span<const std::uint32_t> penumbrae_;
-    std::vector<float> all_;    // by group
-    std::vector<float> own_;    // lights × groups
-    std::vector<Rgb> weights_;  // of lobes: absolute values, lobe_stride × points, summed up over a point's hits
+    std::vector<float> all_;  // by group
+    std::vector<float> own_;  // lights × groups
 };
 
 }  // namespace shlight

@@ -71,8 +71,9 @@ class RadianceQuery {
           settings_(&settings),
           sees_lights_(sees_lights),
           stopped_(&stopped),
-          lighting_(scene, lobes_of_materials(scene.materials(), settings.order, settings.tolerance, stopped),
-                    settings.order, settings.tolerance),
+          lighting_(scene.lights(), scene.extended_light_count(), scene.environment(), scene.environment_group(),
+                    lobes_of_materials(scene.materials(), settings.order, settings.tolerance, stopped), settings.order,
+                    settings.tolerance),
           seen_(origins.size()),
           shaders_([this] { return RayShader(*scene_, lighting_, paths()); }) {}
 
