@@ -128,7 +128,7 @@ def at_horizon(low: float, high: float, offset: Callable[..., Any]) -> CapDraw:
 
 
 def along_a_lobe(rng: np.random.Generator, count: int) -> tuple[Floats, Floats]:
-    """Where the height over a lobe of zonal harmonics is the same all along the edge."""
+    """Places a cap so that the height over a lobe of zonal harmonics is the same all along its edge."""
     return rng.choice([-1, 1], (count, 1)) * rng.choice(LOBES, count), rng.uniform(0.3, 3, count)
 
 
@@ -164,7 +164,7 @@ def star(rng: np.random.Generator, center: Floats, normal: Floats, corners: int,
 
 
 def facing(corners: int, inner: float, low: float, high: float, turned: float = 0.98) -> Callable[..., Floats]:
-    """Of such half sizes relative to the distance, turned away by up to about 80°."""
+    """Draws polygons of such half sizes relative to the distance, turned away by up to about 80°."""
 
     def draw(rng: np.random.Generator) -> Floats:
         direction = at_tilt(rng, rng.uniform(0, 1.3))
@@ -209,7 +209,7 @@ AGAINST_REFERENCE = [
 
 
 def error_of(method: str, lights: list[Any], order: int, dtype: Any, *, clip: bool = True, **options: Any) -> Floats:
-    """Of caps or of a polygon, as the type has them: the largest over all coefficients, relative to L_00."""
+    """The largest error of the coefficients of caps or of a polygon in the type, relative to L_00."""
     function = shlight.cap_coefficients if len(lights) == 2 else shlight.polygon_coefficients
     rounded = [np.asarray(array, dtype) for array in lights]
     exact = function(*(array.astype(float) for array in rounded), order, method="reference", clip=clip)
