@@ -35,6 +35,12 @@ def checked_threads(threads: Any) -> int:
     return checked_integer("threads", threads, 0, 2**31 - 1)
 
 
+def checked_callable(name: str, value: Any) -> Any:
+    if not callable(value):
+        raise TypeError(f"{name} must be callable, got {type(value).__name__}")
+    return value
+
+
 def checked_material(bsdf: Any) -> Bsdf:
     if not isinstance(bsdf, Bsdf):
         raise TypeError(f"bsdf must be a Bsdf, got {type(bsdf).__name__}")

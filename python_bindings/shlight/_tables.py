@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shlight import _core
-from shlight._arrays import checked_array, checked_flag, checked_integer, checked_order
+from shlight._arrays import checked_array, checked_callable, checked_flag, checked_integer, checked_order
 
 Doubles = NDArray[np.float64]
 Order = int | Literal["auto"]
@@ -39,8 +39,7 @@ _MERL_SCALES = np.array([1.0, 1.15, 1.66]) / 1500
 def from_function(
     f: Function, *, isotropic: bool = True, order: Order = "auto", samples: int | None = None
 ) -> _core.Bsdf:
-    if not callable(f):
-        raise TypeError(f"f must be callable, got {type(f).__name__}")
+    checked_callable("f", f)
     is_isotropic, only = checked_flag("isotropic", isotropic), _only_order(order)
     steps = _SAMPLES[is_isotropic] if samples is None else checked_integer("samples", samples, 8, 128)
     if is_isotropic:

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shlight._arrays import Floats, check_last, checked_array, checked_name, checked_threads
+from shlight._arrays import Floats, check_last, checked_array, checked_callable, checked_name, checked_threads
 from shlight._core import RenderCancelled
 
 __all__ = ["denoise", "has_denoiser"]
@@ -60,7 +60,8 @@ def denoise(
     progress: is called with the finished share, 0 … 1; returning False cancels.
 
     Returns (height, width, channels of the image) float32.
-    Raises ValueError naming the argument, RenderCancelled, and RuntimeError where Open Image Denoise is missing.
+    Raises ValueError or TypeError naming the argument, RenderCancelled, and RuntimeError where Open Image Denoise is
+    missing.
     """
     picture = np.array(_checked_picture("image", image, None))
     features = {"color": np.ascontiguousarray(picture[..., :3])}
@@ -69,6 +70,8 @@ def denoise(
             features[name] = _checked_picture(name, feature, picture.shape[:2])
     if normal is not None and albedo is None:
         raise ValueError("normal needs an albedo")
+    if progress is not None:
+        checked_callable("progress", progress)
     level = _QUALITIES[checked_name("quality", quality, _QUALITIES)]
     library = _library()
     if library is None:

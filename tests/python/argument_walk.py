@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 import shlight
-from shlight import Bsdf, images
+from shlight import Bsdf, images, nodes
 from shlight_tools import methods
 
 TRIANGLE = [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, -1.0, 1.0]]
@@ -178,6 +178,7 @@ MODEL.write_text(
 CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.lambert": (Bsdf.lambert, {"albedo": 0.5}),
     "Bsdf.ggx": (Bsdf.ggx, {"roughness": 0.5, "f0": 0.04, "ior": 1.5}),
+    "Bsdf.ggx/varying": (Bsdf.ggx, {"roughness": 0.5, "f0": nodes.uv().x, "ior": 1.5}),
     "Bsdf.oren_nayar": (Bsdf.oren_nayar, {"albedo": 0.5, "sigma": 0.5}),
     "Bsdf.principled": (
         Bsdf.principled,

@@ -12,7 +12,7 @@ import pytest
 from argument_walk import CALLS, GGX, RELATED, TRIANGLE
 
 import shlight
-from shlight import Bsdf
+from shlight import Bsdf, nodes
 
 NAN, INF = math.nan, math.inf
 FAR = (1.001e10, 3.4e18, 1e19, 1e38, 1e300)  # docs/conventions.md: a scene reaches to 1e10
@@ -29,6 +29,14 @@ NO_POLYGON = (
 )
 ONE_PLACE = dict.fromkeys(("object_values", "object_names", "asset_names", "object_indices"))
 NO_PICTURE = (np.zeros((4, 4)), np.zeros((4, 4, 2)), np.zeros((0, 4, 3)), [["a"]], None)
+OF_NODES: dict[str, tuple[Any, str, tuple[Any, ...]]] = {
+    "emission": (nodes.emission, "radiance", (*NO_COLOR[:4], 1.1e15)),
+    "transparent": (nodes.transparent, "share", NO_COLOR),
+    "translucent": (nodes.translucent, "albedo", NO_COLOR),
+    "mix": (lambda factor: nodes.mix(nodes.lambert(0.5), nodes.emission(1.0), factor), "factor", ("half", NAN, INF)),
+    "glass": (lambda ior: nodes.glass(0.5, 0.1, ior), "ior", ("high", NAN, INF)),
+    "product": (nodes.lambert(0.5).__mul__, "factor", NO_COLOR),
+}
 UNKNOWN = {
     "cap_coefficients": ("tolerance", "samples", "seed", "sampling"),
     "cap_coefficients/quadrature": ("samples",),
@@ -48,7 +56,6 @@ def placed(x: float, y: float, z: float) -> Any:
 # These values must be refused in every call that has an argument of the name; "call.argument" replaces them for one.
 REFUSED: dict[str, tuple[Any, ...]] = {
     "albedo": NO_COLOR,
-    "Bsdf.oren_nayar.albedo": ("red", [0.1, 0.2]),  # a program, which clamps numbers, as principled does
     "denoise.albedo": (np.ones((2, 3, 3)),),
     "alpha_threshold": (2.0,),
     "angle": (-1.0, NAN, 3.2),
@@ -93,7 +100,8 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "image_srgb_uint8": (np.zeros((2, 2, 3)),),
     "intensity": ([INF, 0, 0], [1, NAN, 1], "bright", [0, 0, 1.1e30]),
     "ior": (0, 1, 0.5, -1.5, NAN, INF),
-    "Bsdf.principled.ior": (None, "glass"),
+    # Programs clamp other numbers.
+    **{f"Bsdf.principled.{name}": ("large", NAN, INF) for name in CALLS["Bsdf.principled"][1]},
     "irradiance": ([1, NAN, 1], "bright"),
     "Scene.add_sun_light.irradiance": ([1, NAN, 1], "bright", [1.1e15, 0, 0]),
     "left": (1.0, *FAR),
@@ -122,7 +130,6 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "points": ([[0, 0, 0], [NAN, 0, 0]], [[0, 0]], [0, 2e10, 0]),
     "position": NO_PLACE,
     "progress": (5,),
-    "denoise.progress": (),
     "quality": ("best",),
     "radiance": ("red", [1, 2], [1, NAN, 0], [1, INF, 0], [1.1e15, 0, 0]),
     "Scene.set_environment.radiance": (
@@ -134,7 +141,6 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "radius": (-0.1, NAN, *FAR),
     "Scene.add_sphere_light.radius": (0, -1, NAN, *FAR),
     "roughness": (-0.5, 1.5, NAN),
-    "Bsdf.principled.roughness": ("rough",),
     "sampling": ("everywhere",),
     "samples": (0, 1.5),
     "methods.render_monte_carlo.samples": (0, 2**20 + 1, 2**70 - 2**69),
@@ -142,6 +148,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "sensor_width": (0, INF),
     "Scene.set_environment.to_world": (np.eye(4), 2 * np.eye(3), -np.eye(3), np.full((3, 3), NAN), "north", 1.0),
     "shadow_rays": (-1, 10**10),
+    "sigma": ("rough", NAN, -INF),
     "spot_angle": (0.0, 4.0),
     "spread": (0.0, 4.0),
     "tangents": ([0, 0, 0], [0, NAN, 0]),
@@ -219,6 +226,13 @@ def test_arguments_out_of_range_are_refused_by_name(call: str) -> None:
         of_name = REFUSED.get(name, ())
         for bad in REFUSED.get(f"{call.split('/')[0]}.{name}", of_name):
             expect_refusal(call, {name: bad}, "|".join((name, *RELATED.get(name, ()))))
+
+
+@pytest.mark.parametrize(("function", "name", "refused"), OF_NODES.values(), ids=OF_NODES)
+def test_programs_refuse_numbers_out_of_range_by_name(function: Any, name: str, refused: tuple[Any, ...]) -> None:
+    for bad in refused:
+        with pytest.raises(ValueError, match=f"^{name} "):
+            function(bad)
 
 
 @pytest.mark.parametrize(("call", "changed", "name"), TOGETHER)

@@ -23,6 +23,7 @@ from shlight.nodes.values import (
     minimum,
     number,
     operation,
+    reflectance,
     select,
     sqrt,
     vector,
@@ -174,7 +175,7 @@ def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> S
     It is a sum of three shapes without parameters: Lambert's, the same times 1 + t, where t is what light and view have
     in common along the surface, and what the model's first bounce loses. sigma: 0 … 1, clamped.
     """
-    rho = color(albedo, "albedo")
+    rho = reflectance(albedo, "albedo")
     rough = clamp(number(sigma, "sigma"))
     if rough.constant == 0.0:
         return lambert(rho, at)
@@ -245,7 +246,8 @@ def principled(
 ) -> Shader:
     """Blender's Principled BSDF, without sheen, anisotropy and thin film.
 
-    Arguments are the node's inputs; several_bounces: its distribution Multiscatter GGX; at: its normal.
+    Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
+    its normal. Raises ValueError naming an argument that is not finite.
     """
     base = Color(*(maximum(component, 0.0) for component in color(base_color, "base_color")))
     f0_of_metal = _clamped(base)
@@ -293,14 +295,14 @@ def principled(
     if weight.constant == (0.0, 0.0, 0.0):
         return result
     level = maximum(number(specular_ior_level, "specular_ior_level"), 0.0)
-    reflectance = head_on(index)
+    facing = head_on(index)
     if level.constant != 0.5:
-        reflectance = reflectance * (2.0 * level)
-        root = sqrt(clamp(reflectance, 0.0, 0.99))
+        facing = facing * (2.0 * level)
+        root = sqrt(clamp(facing, 0.0, 0.99))
         index = (1.0 + root) / (1.0 - root)
     index = maximum(index, 1.0 / index)
     if index.constant != 1.0:
-        f0 = _clamped(tint * reflectance)
+        f0 = _clamped(tint * facing)
         lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, **several)
         result += Shader(lobes)
         weight = color(weight * passed)

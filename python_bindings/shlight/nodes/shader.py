@@ -10,10 +10,12 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 from shlight import _core
+from shlight._arrays import checked_number
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.rays import Ray, color_on_ray, on_ray, shows_pictures
 from shlight.nodes.values import (
+    LARGEST_RADIANCE,
     Color,
     Number,
     Value,
@@ -24,6 +26,7 @@ from shlight.nodes.values import (
     dot,
     normalize,
     number,
+    reflectance,
 )
 
 BLACK = (0.0, 0.0, 0.0)
@@ -94,7 +97,7 @@ class Shader:
         return self if start == 0 else NotImplemented
 
     def __mul__(self, factor: Varying) -> Shader:
-        by = color(factor, "factor")
+        by = reflectance(factor, "factor")
         lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
         through = tuple(replace(own, weight=color(own.weight * by)) for own in self.refractions)
         return Shader(lobes, color(self.emission * by), color(self.transparency * by), self.aovs, through)
@@ -229,7 +232,7 @@ def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
     A normal that leans away from the smooth one by more than `BUMP` is in the shadow that a bump throws on itself, as
     in Cycles (Estevez, Lecocq & Stein 2019); for less the shadow hardly shows.
     """
-    rho = color(albedo, "albedo")
+    rho = reflectance(albedo, "albedo")
     if normal is None:
         return Shader((Lobe("lambert", rho),))
     leans = dot(normalize(normal), smooth_normal()) < math.cos(BUMP)
@@ -243,13 +246,15 @@ def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
 
 def translucent(albedo: Varying, normal: Vector | None = None) -> Shader:
     """Lambert's reflection of light from the other side: Blender's Translucent BSDF."""
-    return Shader((Lobe("translucent", color(albedo, "albedo"), normal=normal),))
+    return Shader((Lobe("translucent", reflectance(albedo, "albedo"), normal=normal),))
 
 
 def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vector | None = None) -> Shader:
     """A microfacet reflection whose alpha is roughness², like `Bsdf.ggx`."""
-    f0_color = color(f0, "f0")
-    r = number(roughness, "roughness")
+    if ior is not None and not 1 < checked_number("ior", ior) < math.inf:
+        raise ValueError("ior must be finite and greater than 1")
+    f0_color = reflectance(f0, "f0")
+    r = number(roughness, "roughness", 0.0, 1.0)
     edge = "ggx_schlick" if ior is None else "ggx_dielectric"
     rest = color(1.0 - f0_color)
     return Shader(
@@ -262,12 +267,12 @@ def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vec
 
 def emission(radiance: Varying) -> Shader:
     """A surface that gives light [W m^-2 sr^-1] to both sides."""
-    return Shader(emission=color(radiance, "radiance"))
+    return Shader(emission=color(radiance, "radiance", 0.0, LARGEST_RADIANCE))
 
 
 def transparent(share: Varying = 1.0) -> Shader:
     """A surface that lets light go straight through."""
-    return Shader(transparency=color(share, "share"))
+    return Shader(transparency=reflectance(share, "share"))
 
 
 def mix(a: Shader, b: Shader, factor: Number) -> Shader:

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from shlight import _core
 
+LARGEST_COLOR, LARGEST_RADIANCE = 1e10, 1e15  # docs/conventions.md
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Step:
@@ -207,15 +209,21 @@ Number: TypeAlias = "Value | float | Vector"
 Varying: TypeAlias = "Value | Vector | float | Sequence[float]"
 
 
-def number(value: Any, name: str = "value") -> Value:
-    """A number as an expression. Raises ValueError for anything else, naming the argument."""
+def number(value: Any, name: str = "", low: float = -math.inf, high: float = math.inf) -> Value:
+    """A number as an expression.
+
+    name: of the argument of a public function that the number is, "" of a part of an expression. An argument that is no
+        expression must be finite and lie in low … high. Raises ValueError naming it.
+    """
     if isinstance(value, Value):
         return value
     if isinstance(value, Vector):
         return value.as_number()
     known = _floats(value)
     if known is None or known.ndim != 0:
-        raise ValueError(f"{name} must be a number or an expression of shlight.nodes, got {type(value).__name__}")
+        kind = type(value).__name__
+        raise ValueError(f"{name or 'value'} must be a number or an expression of shlight.nodes, got {kind}")
+    _check_range(name, known, low, high)
     return Value(Step("constant", (), float(known)))
 
 
@@ -231,8 +239,14 @@ def _floats(value: Any) -> NDArray[np.float32] | None:
         return array.astype(np.float32)
 
 
-def triple(value: Any, name: str = "value") -> tuple[Value, Value, Value]:
-    """Three numbers as expressions; a number stands for three equal ones. Raises ValueError naming the argument."""
+def _check_range(name: str, known: NDArray[np.float32], low: float, high: float) -> None:
+    if name and not (np.isfinite(known) & (known >= low) & (known <= high)).all():
+        range_of = "be finite" if (low, high) == (-math.inf, math.inf) else f"lie in [{low:g}, {high:g}]"
+        raise ValueError(f"{name} must {range_of}, got {known.tolist()}")
+
+
+def triple(value: Any, name: str = "", low: float = -math.inf, high: float = math.inf) -> tuple[Value, Value, Value]:
+    """Three numbers as expressions; a number stands for three equal ones. See `number`."""
     if isinstance(value, Vector):
         return value.x, value.y, value.z
     if isinstance(value, Value):
@@ -240,20 +254,27 @@ def triple(value: Any, name: str = "value") -> tuple[Value, Value, Value]:
     known = _floats(value)
     if known is None or known.shape not in ((), (3,)):
         raise ValueError(
-            f"{name} must be a number, three numbers or an expression of shlight.nodes, got {type(value).__name__}"
+            f"{name or 'value'} must be a number, three numbers or an expression of shlight.nodes, "
+            f"got {type(value).__name__}"
         )
+    _check_range(name, known, low, high)
     x, y, z = (number(component) for component in np.broadcast_to(known, (3,)))
     return x, y, z
 
 
-def vector(value: Any, name: str = "value") -> Vector:
+def vector(value: Any, name: str = "") -> Vector:
     """A vector; see `triple`."""
     return value if isinstance(value, Vector) and not isinstance(value, Color) else Vector(*triple(value, name))
 
 
-def color(value: Any, name: str = "color") -> Color:
+def color(value: Any, name: str = "", low: float = -math.inf, high: float = math.inf) -> Color:
     """A colour; see `triple`."""
-    return value if isinstance(value, Color) else Color(*triple(value, name))
+    return value if isinstance(value, Color) else Color(*triple(value, name, low, high))
+
+
+def reflectance(value: Any, name: str) -> Color:
+    """A colour that is multiplied with what a lobe reflects; see `number`."""
+    return color(value, name, 0.0, LARGEST_COLOR)
 
 
 def steps(name: str, *arguments: Number, data: Any = None) -> tuple[Value, ...]:
