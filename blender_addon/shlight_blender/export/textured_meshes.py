@@ -93,8 +93,9 @@ def sampling_levels(texels: Array) -> IntArray:
     return levels
 
 
-def _pyramid(radiance: Radiance, uvs: Array, kept: int, finer: int) -> _Pyramid:
-    parts = np.einsum("pij,jk->pik", corners_at(kept), uvs)
+def _pyramids(radiance: Radiance, uvs: Array, kept: int, finer: int) -> list[_Pyramid]:
+    """The pyramids of triangles (n, 3, c), which are sampled together."""
+    parts = np.einsum("pij,njk->npik", corners_at(kept), uvs).reshape(-1, *uvs.shape[1:])
     centers = corners_at(finer).mean(axis=1)
     step = max(SAMPLES_AT_ONCE >> (2 * finer), 1)
     mean, square = [], []
@@ -103,11 +104,12 @@ def _pyramid(radiance: Radiance, uvs: Array, kept: int, finer: int) -> _Pyramid:
         found = radiance(places.reshape(-1, places.shape[-1])).reshape(*places.shape[:2], -1)
         mean.append(found.mean(axis=1))
         square.append((found**2).sum(axis=2).mean(axis=1))
-    means, squares = [np.concatenate(mean)], [np.concatenate(square)]
+    count, sides = len(uvs), mean[0].shape[1]
+    means, squares = [np.concatenate(mean).reshape(count, -1, sides)], [np.concatenate(square).reshape(count, -1)]
     for _ in range(kept):
-        means.insert(0, means[0].reshape(-1, 4, means[0].shape[1]).mean(axis=1))
-        squares.insert(0, squares[0].reshape(-1, 4).mean(axis=1))
-    return _Pyramid(means, squares)
+        means.insert(0, means[0].reshape(count, -1, 4, sides).mean(axis=2))
+        squares.insert(0, squares[0].reshape(count, -1, 4).mean(axis=2))
+    return [_Pyramid([level[i] for level in means], [level[i] for level in squares]) for i in range(count)]
 
 
 def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int = MOST_PIECES) -> Pieces:
@@ -119,10 +121,10 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
     kept = np.clip(levels - FINER_LEVELS, 0, MOST_LEVELS)
     while (4.0**kept).sum() > MOST_PARTS and kept.max() > 0:
         kept = np.minimum(kept, kept.max() - 1)
-    pyramids = [
-        _pyramid(radiance, triangle, int(keep), int(level - keep))
-        for triangle, keep, level in zip(uvs, kept, levels, strict=True)
-    ]
+    pyramids: dict[int, _Pyramid] = {}
+    for keep, level in {*zip(kept.tolist(), levels.tolist(), strict=True)}:
+        chosen = np.flatnonzero((kept == keep) & (levels == level))
+        pyramids |= zip(chosen.tolist(), _pyramids(radiance, uvs[chosen], keep, level - keep), strict=True)
 
     def part(triangle: int, level: int, number: int) -> tuple[float, tuple[int, int, int]]:
         return area[triangle] / 4.0**level * pyramids[triangle].variance(level, number), (triangle, level, number)
@@ -133,12 +135,12 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
             return []
         return [part(triangle, level + 1, quarter) for quarter in range(4 * number, 4 * number + 4)]
 
-    whole = sum(a * float(pyramid.squares[0][0]) for a, pyramid in zip(area, pyramids, strict=True))
+    whole = sum(area[triangle] * float(pyramid.squares[0][0]) for triangle, pyramid in sorted(pyramids.items()))
     places, left = divided([part(triangle, 0, 0) for triangle in range(len(uvs))], quarters, TOLERANCE**2 * whole, most)
     return _gathered(places, pyramids, area, share_of(left, whole))
 
 
-def _gathered(places: list[tuple[int, int, int]], pyramids: list[_Pyramid], area: Array, error: float) -> Pieces:
+def _gathered(places: list[tuple[int, int, int]], pyramids: dict[int, _Pyramid], area: Array, error: float) -> Pieces:
     tables = [corners_at(level) for level in range(1 + max(level for _, level, _ in places))]
     triangles = np.array([triangle for triangle, _, _ in places], dtype=np.int64)
     return Pieces(
@@ -253,7 +255,10 @@ def _cut_surface(
     count = 3 * len(corners)
     at_corners = {entry: known[:, :, i].reshape(-1) for i, entry in enumerate(inputs)}
     texels = [places.reshape(-1, 3, 2) for places in emission.texels(at_corners, count)]
-    levels = np.max([sampling_levels(places) for places in texels or [np.zeros((len(corners), 3, 2))]], axis=0)
+    differs = (known != known[:, :1]).any(axis=(1, 2))
+    levels = np.zeros(len(corners), dtype=np.int64)
+    for places in texels or [np.zeros((len(corners), 3, 2))]:
+        levels[differs] = np.maximum(levels[differs], sampling_levels(places[differs]))
 
     def radiance(places: Array) -> Array:
         return emission.of_sides({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))
