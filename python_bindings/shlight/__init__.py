@@ -38,6 +38,7 @@ from shlight.coefficients import (  # noqa: E402
 )
 from shlight.coefficients import shade as shade  # noqa: E402  the deprecated name of contract
 from shlight.denoising import denoise, has_denoiser  # noqa: E402
+from shlight.gradients import CoefficientGradient, PolygonGradient, SphereGradient  # noqa: E402
 from shlight.photometry import luminous  # noqa: E402
 from shlight.queries import Hits, shading_frames  # noqa: E402
 from shlight.rendering import RenderResult, render  # noqa: E402
@@ -69,13 +70,16 @@ __version__ = "0.1.0"
 __all__ = [
     "DEFAULT_TOLERANCE",
     "Bsdf",
+    "CoefficientGradient",
     "Hits",
     "Light",
+    "PolygonGradient",
     "RenderCancelled",
     "RenderReport",
     "RenderResult",
     "Scene",
     "SceneMesh",
+    "SphereGradient",
     "cap_coefficients",
     "contract",
     "denoise",

@@ -28,6 +28,9 @@ def evaluate(coefficients: _Floats, directions: _Floats, order: int, threads: in
 def sphere_coefficients(
     centers: _Floats, radii: _Floats, order: int, clip: bool, threads: int, out: _Floats | None = None
 ) -> _Floats: ...
+def sphere_coefficients_gradient(
+    centers: _Floats, radii: _Floats, order: int, clip: bool, threads: int, out: _Floats | None = None
+) -> tuple[_Floats, _Floats, _Floats]: ...
 def cap_coefficients(
     axes: _Floats, half_angles: _Floats, order: int, clip: bool, threads: int, out: _Floats | None = None
 ) -> _Floats: ...
@@ -207,6 +210,12 @@ def shade_disks(
     threads: int,
     with_effort: bool,
 ) -> _Shaded: ...
+def shade_spheres_gradient(
+    centers: _Floats, radii: _Floats, bsdf: Bsdf, cos_theta_o: _Floats, azimuth: _Floats, threads: int
+) -> tuple[_Floats, _Floats, _Floats]: ...
+def shade_polygons_gradient(
+    vertices: _Floats, bsdf: Bsdf, cos_theta_o: _Floats, azimuth: _Floats, threads: int
+) -> tuple[_Floats, _Floats]: ...
 
 class RenderCancelled(RuntimeError): ...  # noqa: N818  the name says what happened, not what went wrong
 

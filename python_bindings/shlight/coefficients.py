@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
-from typing import Any, Literal
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -38,7 +38,8 @@ from shlight._arrays import (
     wanted_type,
 )
 from shlight._calls import names_rows
-from shlight._methods import coefficient_function
+from shlight._methods import coefficient_function, is_own
+from shlight.gradients import CoefficientGradient
 
 
 @names_rows
@@ -77,6 +78,40 @@ def evaluate(coefficients: ArrayLike, directions: ArrayLike, *, threads: int = 0
     return shaped(flat, shape)
 
 
+@overload
+def sphere_coefficients(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    order: int,
+    *,
+    clip: bool = ...,
+    method: str = ...,
+    dtype: DTypeLike | None = ...,
+    threads: int = ...,
+    out: Floats | None = ...,
+    tolerance: float | None = ...,
+    samples: int | None = ...,
+    seed: int | None = ...,
+    sampling: Literal["solid_angle", "area"] | None = ...,
+    gradient: Literal[False] = ...,
+) -> Floats: ...
+@overload
+def sphere_coefficients(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    order: int,
+    *,
+    clip: bool = ...,
+    method: str = ...,
+    dtype: DTypeLike | None = ...,
+    threads: int = ...,
+    out: Floats | None = ...,
+    tolerance: float | None = ...,
+    samples: int | None = ...,
+    seed: int | None = ...,
+    sampling: Literal["solid_angle", "area"] | None = ...,
+    gradient: Literal[True],
+) -> tuple[Floats, CoefficientGradient]: ...
 @names_rows
 def sphere_coefficients(
     centers: ArrayLike,
@@ -92,13 +127,20 @@ def sphere_coefficients(
     samples: int | None = None,
     seed: int | None = None,
     sampling: Literal["solid_angle", "area"] | None = None,
-) -> Floats:
+    gradient: bool = False,
+) -> Floats | tuple[Floats, CoefficientGradient]:
     """Coefficients of sphere lights of unit radiance: the basis integrated over the cap that each covers.
 
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
     Zhou & Wei 2020, Eq. 4 with unit radiance; docs/theory.md, 3, derives the recurrences.
+
+    gradient: return also a CoefficientGradient, the exact derivatives by centre and radius, for orders 1 … 63. A sphere
+    that touches the shading point has infinite ones by its half angle; they count as 0.
     """
+    wanted = checked_flag("gradient", gradient)
+    if wanted and not is_own("exact", method):
+        raise ValueError("method must be 'exact' with gradient")
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("sphere_coefficients", method, **options)
     dtype = wanted_type(dtype, centers, radii)
@@ -107,8 +149,14 @@ def sphere_coefficients(
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape)
     n, above = checked_order(order), checked_flag("clip", clip)
-    lights = (rows(c, shape, 3), rows(r, shape))
-    return _result(compute, (*lights, n, above, checked_threads(threads)), shape, out)
+    arguments = (rows(c, shape, 3), rows(r, shape), n, above, checked_threads(threads))
+    if not wanted:
+        return _result(compute, arguments, shape, out)
+    full = (*shape, n * n)
+    into = None if out is None else _checked_out(out, full, arguments[:2]).reshape(-1, n * n)
+    value, center, radius = _core.sphere_coefficients_gradient(*arguments, into)
+    derivatives = CoefficientGradient(center.reshape(*full, 3), radius.reshape(full))
+    return value.reshape(full) if out is None else out, derivatives
 
 
 @names_rows
@@ -246,16 +294,21 @@ def _result(
     if out is None:
         made: Floats = compute(*arguments).reshape(shape)
         return made
+    _checked_out(out, shape, arrays)
+    if compute.__module__ == _core.__name__:
+        compute(*arguments, out=out.reshape(-1, shape[-1]))
+    else:  # the methods to compare with
+        out[...] = compute(*arguments).reshape(shape)
+    return out
+
+
+def _checked_out(out: Floats, shape: tuple[int, ...], arrays: Sequence[Floats]) -> Floats:
     dtype = arrays[0].dtype
     fits = isinstance(out, np.ndarray) and out.dtype == dtype and out.shape == shape
     if not (fits and out.flags.c_contiguous and out.flags.writeable):
         raise ValueError(f"out must be a C-contiguous, writeable array of {dtype} and shape {shape}")
     if any(np.may_share_memory(out, own) for own in arrays):
         raise ValueError("out must not overlap the inputs")
-    if compute.__module__ == _core.__name__:
-        compute(*arguments, out=out.reshape(-1, shape[-1]))
-    else:  # the methods to compare with
-        out[...] = compute(*arguments).reshape(shape)
     return out
 
 

@@ -32,6 +32,9 @@ from shlight._arrays import (
 from shlight._calls import names_rows
 from shlight._core import DEFAULT_TOLERANCE
 from shlight._methods import is_own, refuse_options, shading_function
+from shlight.gradients import PolygonGradient, SphereGradient
+
+_MAX_AXES = 32  # of numpy's arrays before its version 2
 
 Radiance = NDArray[np.float32]
 Effort = NDArray[np.int32]
@@ -64,6 +67,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
+    gradient: Literal[False] = ...,
     **settings: Unpack[_MethodSettings],
 ) -> Radiance: ...
 @overload
@@ -74,8 +78,31 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
+    gradient: Literal[False] = ...,
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort]: ...
+@overload
+def shade_spheres(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    return_effort: Literal[False] = ...,
+    gradient: Literal[True],
+    **settings: Unpack[_MethodSettings],
+) -> tuple[Radiance, SphereGradient]: ...
+@overload
+def shade_spheres(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    return_effort: Literal[True],
+    gradient: Literal[True],
+    **settings: Unpack[_MethodSettings],
+) -> tuple[Radiance, Effort, SphereGradient]: ...
 @names_rows
 def shade_spheres(
     centers: ArrayLike,
@@ -92,7 +119,8 @@ def shade_spheres(
     seed: int | None = None,
     sampling: Sampling | None = None,
     return_effort: bool = False,
-) -> Radiance | tuple[Radiance, Effort]:
+    gradient: bool = False,
+) -> Any:
     """Radiance reflected of sphere lights of unit radiance towards ω_o = (sinθ_o, 0, cosθ_o), clipped by the horizon.
 
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
@@ -107,8 +135,11 @@ def shade_spheres(
 
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
+    With gradient also a SphereGradient, of the arrays' type: the exact derivatives of the reflected radiance, whatever
+    the tolerance of the radiance returned. Those of mirrors are 0; method and order must then be "auto".
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
+    derived = _checked_gradient(gradient, order, method)
     own = is_own("auto", method)
     dtype = given_type(centers, radii) if own else np.float64
     c = checked_array("centers", centers, dtype, core_axes=1)
@@ -116,7 +147,8 @@ def shade_spheres(
     cosines = _checked_views(cos_theta_o)
     check_last("centers", c, 3)
     phi = _checked_azimuths(phi_o, bsdf, method)
-    shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape, phi_o=phi.shape)
+    shapes = {"centers": c.shape[:-1], "radii": r.shape, "cos_theta_o": cosines.shape, "phi_o": phi.shape}
+    shape = _broadcast_with(2 if derived else 0, shapes)
     c = _seen_by(phi, c)
     if own:
         refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
@@ -129,7 +161,12 @@ def shade_spheres(
         options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
         shade = shading_function("shade_spheres", method, _order(order), **options)
         flat = shade(*lights, checked_threads(threads))
-    return _result(*flat, shape, wanted)
+    if not derived:
+        return _result(*flat, shape, wanted)
+    center, size, rough = _core.shade_spheres_gradient(spheres, radius, bsdf, *views, checked_threads(threads))
+    moved = _seen_by(-phi[..., None], center.reshape(*shape, 3, 3))
+    made = SphereGradient(moved, size.reshape(*shape, 3), rough.reshape(*shape, 3))
+    return (*_parts(_result(*flat, shape, wanted)), made)
 
 
 @overload
@@ -139,6 +176,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
+    gradient: Literal[False] = ...,
     **settings: Unpack[_MethodSettings],
 ) -> Radiance: ...
 @overload
@@ -148,8 +186,29 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
+    gradient: Literal[False] = ...,
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort]: ...
+@overload
+def shade_polygons(
+    vertices: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    return_effort: Literal[False] = ...,
+    gradient: Literal[True],
+    **settings: Unpack[_MethodSettings],
+) -> tuple[Radiance, PolygonGradient]: ...
+@overload
+def shade_polygons(
+    vertices: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    return_effort: Literal[True],
+    gradient: Literal[True],
+    **settings: Unpack[_MethodSettings],
+) -> tuple[Radiance, Effort, PolygonGradient]: ...
 @names_rows
 def shade_polygons(
     vertices: ArrayLike,
@@ -165,13 +224,16 @@ def shade_polygons(
     seed: int | None = None,
     sampling: Sampling | None = None,
     return_effort: bool = False,
-) -> Radiance | tuple[Radiance, Effort]:
+    gradient: bool = False,
+) -> Any:
     """Like shade_spheres, for planar polygons.
 
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
     or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
+    gradient: a PolygonGradient, of the region within the outline; moved vertices need not stay in one plane.
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
+    derived = _checked_gradient(gradient, order, method)
     own = is_own("auto", method)
     dtype = given_type(vertices) if own else np.float64
     v = checked_array("vertices", vertices, dtype, core_axes=2)
@@ -180,7 +242,8 @@ def shade_polygons(
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     cosines = _checked_views(cos_theta_o)
     phi = _checked_azimuths(phi_o, bsdf, method)
-    shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape, phi_o=phi.shape)
+    shapes = {"vertices": v.shape[:-2], "cos_theta_o": cosines.shape, "phi_o": phi.shape}
+    shape = _broadcast_with(3 if derived else 0, shapes)
     v = _seen_by(phi[..., None], v)
     polygons = rows(v, shape, *v.shape[-2:])
     if own:
@@ -193,7 +256,12 @@ def shade_polygons(
         options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
         shade = shading_function("shade_polygons", method, _order(order), **options)
         flat = shade(*lights, checked_threads(threads))
-    return _result(*flat, shape, wanted)
+    if not derived:
+        return _result(*flat, shape, wanted)
+    moved, rough = _core.shade_polygons_gradient(polygons, bsdf, *views, checked_threads(threads))
+    moved = _seen_by(-phi[..., None, None], moved.reshape(*shape, 3, *v.shape[-2:]))
+    made = PolygonGradient(moved, rough.reshape(*shape, 3))
+    return (*_parts(_result(*flat, shape, wanted)), made)
 
 
 @overload
@@ -297,6 +365,27 @@ def _one_or_all(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 def _order(order: int | Literal["auto"]) -> int:
     return 0 if isinstance(order, str) and order == "auto" else checked_order(order)
+
+
+def _broadcast_with(added: int, shapes: dict[str, tuple[int, ...]]) -> tuple[int, ...]:
+    """The shape that these broadcast to, which bears so many axes more."""
+    shape = broadcast(**shapes)
+    if len(shape) + added > _MAX_AXES:
+        raise ValueError(f"{max(shapes, key=lambda name: len(shapes[name]))} has too many leading axes for a gradient")
+    return shape
+
+
+def _checked_gradient(gradient: bool, order: int | Literal["auto"], method: str) -> bool:
+    if not checked_flag("gradient", gradient):
+        return False
+    for name, value in (("order", order), ("method", method)):
+        if not (isinstance(value, str) and value == "auto"):
+            raise ValueError(f"{name} must be 'auto' with gradient")
+    return True
+
+
+def _parts(result: Any) -> tuple[Any, ...]:
+    return result if isinstance(result, tuple) else (result,)
 
 
 def _result(radiance: Floats, effort: Any, shape: tuple[int, ...], return_effort: bool) -> Any:

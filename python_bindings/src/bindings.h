@@ -12,6 +12,7 @@ void bind_tables(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);
 void bind_shader(pybind11::module_& m);
 void bind_shading(pybind11::module_& m);
+void bind_gradients(pybind11::module_& m);
 void bind_scene(pybind11::module_& m);
 void bind_render(pybind11::module_& m);
 

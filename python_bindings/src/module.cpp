@@ -14,6 +14,7 @@ PYBIND11_MODULE(_core, m) {
     shlight::python::bind_bsdf(m);
     shlight::python::bind_shader(m);
     shlight::python::bind_shading(m);
+    shlight::python::bind_gradients(m);
     shlight::python::bind_scene(m);
     shlight::python::bind_render(m);
 }

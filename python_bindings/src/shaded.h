@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Results of shading functions.
+// Views and results of shading functions.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,11 @@
 #include "shlight/types.h"
 
 namespace shlight::python {
+
+/// The views of some lights: theirs, or the one for all.
+inline std::span<const double> part_of(std::span<const double> views, std::size_t first, std::size_t count) {
+    return views.size() == 1 ? views : views.subspan(first, count);
+}
 
 /// Radiance (count, 3) and, if requested, effort (count): as numpy arrays and as spans to fill.
 struct Shaded {

@@ -23,11 +23,6 @@ void shade_parts(std::size_t total, const Bsdf& bsdf, const ShadeSettings& setti
     in_chunks(total, threads, [&](std::size_t first, std::size_t count) { work(shaders.local(), first, count); });
 }
 
-/// The views of some lights: theirs, or the one for all.
-std::span<const double> part_of(std::span<const double> views, std::size_t first, std::size_t count) {
-    return views.size() == 1 ? views : views.subspan(first, count);
-}
-
 /// cos_theta_o, azimuth: one for each light, or one for all.
 template <class T>
 py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf, const Array<double>& cos_theta_o,

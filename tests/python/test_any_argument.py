@@ -25,9 +25,9 @@ def public_functions() -> Iterator[tuple[str, Any]]:
     for name in shlight.__all__:
         value = getattr(shlight, name)
         if isinstance(value, type) and not issubclass(value, Exception):
-            for method, function in vars(value).items():
+            for method in vars(value):
                 operator = method in ("__mul__", "__rmul__")
-                if (operator or not method.startswith("_")) and not isinstance(function, property):
+                if (operator or not method.startswith("_")) and callable(getattr(value, method)):
                     yield f"{name}.{method}", getattr(value, method)
         elif callable(value) and not isinstance(value, type):
             yield name, value

@@ -29,4 +29,8 @@ struct BoundaryIntegral {
 BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, std::span<const Arc<double>> arcs,
                                    double tolerance, double albedo = 1);
 
+/// ∫ ∂(f·cos)/∂α dω, in the same way, to about 1e-7 of it.
+BoundaryIntegral boundary_integral_by_alpha(const GgxShape& shape, double cos_theta_o,
+                                            std::span<const Arc<double>> arcs);
+
 }  // namespace shlight

@@ -109,6 +109,65 @@ class SlopeNdfLanes {
     const GaussRule& rule_;
 };
 
+/// f·cos in directions along an arc.
+template <class Lobe>
+class DirectionLanes {
+  public:
+    DirectionLanes(const LobeShape& shape, double cos_o, const Lobe& lobe)
+        : alpha2_(lobe_width(shape) * lobe_width(shape)),
+          cos_o_(cos_o),
+          sin_o_(std::sqrt((1 - cos_o) * (1 + cos_o))),
+          lobe_(lobe),
+          view_(lobe.view(D(), all(D(), cos_o), all(D(), lobe_parameter(shape)))) {}
+
+    /// The ArcDensity of each parameter.
+    HWY_INLINE void densities(const DirectionPath& path, V<Doubles> parameter, std::array<V<Doubles>, 3>& out) const {
+        const D d;
+        const auto fc = hn::Mul(all(d, path.flatness), hn::Cos(d, parameter));
+        const auto s = hn::Sin(d, parameter);
+        const auto r = hn::Sqrt(hn::MulAdd(fc, fc, hn::Mul(s, s)));
+        const auto row = [&](int i) HWY_ATTR {
+            return hn::MulAdd(all(d, path.frame[i][0]), r,
+                              hn::MulAdd(all(d, path.frame[i][1]), fc, hn::Mul(all(d, path.frame[i][2]), s)));
+        };
+        const auto inverse = hn::Div(all(d, 1), row(0));
+        const auto c_psi = hn::Mul(row(1), inverse);
+        const auto s_psi = hn::Mul(row(2), inverse);
+        const auto component = [&](int i) HWY_ATTR {
+            return hn::MulAdd(c_psi, all(d, path.cosine[i]),
+                              hn::MulAdd(s_psi, all(d, path.sine[i]), all(d, path.axis[i])));
+        };
+        const auto step = hn::Div(hn::Mul(all(d, path.flatness), inverse), r);
+        out[0] = hn::Mul(step, value(component(0), component(1), component(2)));
+        out[1] = hn::Mul(out[0], c_psi);
+        out[2] = hn::Mul(out[0], s_psi);
+    }
+
+  private:
+    using D = Doubles;
+
+    /// f·cos towards ω_i = (x, y, z), as its slowly varying factor times D(h) / 4.
+    HWY_INLINE V<D> value(V<D> x, V<D> y, V<D> z) const {
+        const D d;
+        const auto half_x = hn::Add(x, all(d, sin_o_));
+        const auto half_z = hn::Add(z, all(d, cos_o_));
+        const auto across = hn::MulAdd(half_x, half_x, hn::Mul(y, y));
+        const auto up = hn::Mul(half_z, half_z);
+        const auto square = hn::Add(across, up);
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+        const HalfVector<D> half = {hn::Mul(half_x, inverse), hn::Mul(y, inverse), hn::Mul(half_z, inverse),
+                                    hn::Mul(all(d, 0.5), hn::Mul(square, inverse))};
+        const auto sharpness = hn::Div(square, hn::MulAdd(all(d, alpha2_), up, across));
+        const auto peak = all(d, alpha2_ / (4 * std::numbers::pi));
+        const auto ndf = hn::Mul(hn::Mul(peak, sharpness), sharpness);
+        return hn::IfThenElseZero(hn::Gt(z, hn::Zero(d)), hn::Mul(lobe_.over_ndf(d, half, z, view_), ndf));
+    }
+
+    double alpha2_, cos_o_, sin_o_;
+    Lobe lobe_;
+    typename Lobe::template View<D> view_;
+};
+
 template <class T, class Lobe>
 void densities(const SlopeNdf& slope_ndf, const Lobe& lobe, const BoundaryPath& path,
                std::span<const double> parameters, std::span<double> values) {
@@ -127,11 +186,35 @@ void densities(const SlopeNdf& slope_ndf, const Lobe& lobe, const BoundaryPath& 
 
 void boundary_densities_in_lanes(const SlopeNdf& slope_ndf, const BoundaryPath& path, bool f32,
                                  std::span<const double> parameters, std::span<double> values) {
-    with_lobe_lanes(slope_ndf.shape, [&](const auto& lobe) {
+    const auto fill = [&](const auto& lobe) {
         if (f32) {
             densities<float>(slope_ndf, lobe, path, parameters, values);
         } else {
             densities<double>(slope_ndf, lobe, path, parameters, values);
+        }
+    };
+    if (slope_ndf.by_alpha) {
+        with_lanes_by_alpha(std::get<GgxShape>(slope_ndf.shape), fill);
+    } else {
+        with_lobe_lanes(slope_ndf.shape, fill);
+    }
+}
+
+void direction_densities_in_lanes(const LobeShape& shape, double cos_o, const DirectionPath& path,
+                                  std::span<const double> parameters, std::span<ArcDensity> values) {
+    const Doubles d;
+    alignas(64) std::array<double, kBoundaryPoints> padded{};
+    std::fill(std::copy(parameters.begin(), parameters.end(), padded.begin()), padded.end(), parameters[0]);
+    with_lobe_lanes(shape, [&](const auto& lobe) {
+        const DirectionLanes lanes(shape, cos_o, lobe);
+        for (std::size_t i = 0; i < parameters.size(); i += kLaneCount<Doubles>) {
+            std::array<V<Doubles>, 3> densities;
+            lanes.densities(path, hn::Load(d, padded.data() + i), densities);
+            alignas(64) std::array<double, 3 * kLaneCount<Doubles>> buffer;
+            hn::StoreInterleaved3(densities[0], densities[1], densities[2], d, buffer.data());
+            for (std::size_t k = 0; k < std::min(kLaneCount<Doubles>, parameters.size() - i); ++k) {
+                std::copy_n(buffer.data() + 3 * k, 3, values[i + k].begin());
+            }
         }
     });
 }
@@ -144,10 +227,16 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 
 HWY_EXPORT(boundary_densities_in_lanes);
+HWY_EXPORT(direction_densities_in_lanes);
 
 void boundary_densities(const SlopeNdf& slope_ndf, const BoundaryPath& path, bool f32,
                         std::span<const double> parameters, std::span<double> values) {
     HWY_DYNAMIC_DISPATCH(boundary_densities_in_lanes)(slope_ndf, path, f32, parameters, values);
+}
+
+void direction_densities(const LobeShape& shape, double cos_o, const DirectionPath& path,
+                         std::span<const double> parameters, std::span<ArcDensity> values) {
+    HWY_DYNAMIC_DISPATCH(direction_densities_in_lanes)(shape, cos_o, path, parameters, values);
 }
 
 }  // namespace shlight

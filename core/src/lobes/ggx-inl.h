@@ -88,6 +88,23 @@ class GgxLanes {
         return with_fresnel(d, visibility, [&] HWY_ATTR { return half.cosine; });
     }
 
+    /// ∂ ln(f·cos) / ∂α, f·cos being a product of D(h), 1 / (α² h_z² + h_x² + h_y²)² but for α², and of the
+    /// visibility.
+    template <class D>
+    HWY_INLINE V<D> relative_by_alpha(D d, V<D> alpha, const HalfVector<D>& half, V<D> cos_i,
+                                      const View<D>& view) const {
+        const auto one = all(d, 1);
+        const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
+        const auto up = hn::Mul(view.alpha2, hn::Mul(half.z, half.z));
+        const auto peak = hn::Div(hn::Sub(across, up), hn::Add(across, up));  // α/2 ∂ ln D / ∂α
+        const auto masked = masking(d, view.alpha2, cos_i);
+        const auto change =
+            hn::MulAdd(hn::Div(view.cosine, masked), hn::NegMulAdd(cos_i, cos_i, one),
+                       hn::Mul(hn::Div(cos_i, view.masking), hn::NegMulAdd(view.cosine, view.cosine, one)));
+        const auto all_masked = hn::MulAdd(view.cosine, masked, hn::Mul(cos_i, view.masking));
+        return hn::Sub(hn::Div(hn::Add(peak, peak), alpha), hn::Mul(alpha, hn::Div(change, all_masked)));
+    }
+
   private:
     /// D(h) / 2 = α² / (2π) · (|h|² / (α² h_z² + h_x² + h_y²))².
     HWY_INLINE V<Floats> half_distribution(const HalfSum& sum, const View<Floats>& view) const {
@@ -118,18 +135,55 @@ class GgxLanes {
     double ior_;
 };
 
-template <class Function>
-void with_lanes_of(const GgxShape& shape, const Function& function) {
+/// ∂(f·cos)/∂α of a GGX lobe in place of f·cos, for integrals along a boundary.
+template <Fresnel kFresnel>
+class GgxByAlphaLanes {
+  public:
+    template <class D>
+    struct View {
+        typename GgxLanes<kFresnel>::template View<D> own;
+        V<D> alpha;
+    };
+
+    explicit GgxByAlphaLanes(const GgxShape& shape) : lobe_(shape) {}
+
+    template <class D>
+    HWY_INLINE View<D> view(D d, V<D> cos_o, V<D> alpha) const {
+        return {lobe_.view(d, cos_o, alpha), alpha};
+    }
+    template <class D>
+    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
+        return hn::Mul(lobe_.over_ndf(d, half, cos_i, view.own),
+                       lobe_.relative_by_alpha(d, view.alpha, half, cos_i, view.own));
+    }
+
+  private:
+    GgxLanes<kFresnel> lobe_;
+};
+
+/// Calls function(lanes) with Lanes<the shape's Fresnel factor>.
+template <template <Fresnel> class Lanes, class Function>
+void with_fresnel_of(const GgxShape& shape, const Function& function) {
     switch (shape.fresnel) {
         case Fresnel::one:
-            return function(GgxLanes<Fresnel::one>(shape));
+            return function(Lanes<Fresnel::one>(shape));
         case Fresnel::schlick:
-            return function(GgxLanes<Fresnel::schlick>(shape));
+            return function(Lanes<Fresnel::schlick>(shape));
         case Fresnel::dip:
-            return function(GgxLanes<Fresnel::dip>(shape));
+            return function(Lanes<Fresnel::dip>(shape));
         case Fresnel::dielectric:
-            return function(GgxLanes<Fresnel::dielectric>(shape));
+            return function(Lanes<Fresnel::dielectric>(shape));
     }
+}
+
+template <class Function>
+void with_lanes_by_alpha(const GgxShape& shape, const Function& function) {
+    with_fresnel_of<GgxByAlphaLanes>(shape, function);
+}
+
+template <class Function>
+void with_lanes_of(const GgxShape& shape, const Function& function) {
+    with_fresnel_of<GgxLanes>(shape, function);
 }
 
 }  // namespace shlight::HWY_NAMESPACE

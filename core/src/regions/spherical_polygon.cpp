@@ -73,6 +73,19 @@ double triangle_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     return 2 * std::atan2(triple, product + ab + bc + ca);
 }
 
+double plane_side(std::span<const Vec3d> vertices) {
+    const Vec3d normal = vector_area(vertices);
+    double farthest = 0;
+    double distance = 0;
+    for (const Vec3d& p : vertices) {
+        farthest = std::max(farthest, glm::dot(p, p));
+        distance += glm::dot(normal, p);
+    }
+    farthest = std::sqrt(farthest);
+    distance /= static_cast<double>(vertices.size());
+    return std::abs(distance) > kEdgeOn * farthest * glm::length(normal) ? distance : 0;
+}
+
 SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
     std::vector<Vec3d> kept;
     std::span<const Vec3d> v = vertices;
@@ -83,21 +96,13 @@ SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
     if (v.size() < 3) {
         return;
     }
-    // The plane and its distance from the origin come from the vertices as given: clipping would only add rounding.
-    const Vec3d normal = vector_area(vertices);
-    double farthest = 0;
-    double distance = 0;
-    for (const Vec3d& p : vertices) {
-        farthest = std::max(farthest, glm::dot(p, p));
-        distance += glm::dot(normal, p);
-    }
-    farthest = std::sqrt(farthest);
-    distance /= static_cast<double>(vertices.size());
-    if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
+    // The plane's side comes from the vertices as given: clipping would only add rounding.
+    const double side = plane_side(vertices);
+    if (side == 0) {
         return;
     }
     const std::size_t count = v.size();
-    const auto vertex = [&](std::size_t i) -> const Vec3d& { return v[distance < 0 ? count - 1 - i : i]; };
+    const auto vertex = [&](std::size_t i) -> const Vec3d& { return v[side < 0 ? count - 1 - i : i]; };
     for (std::size_t i = 1; i + 1 < count; ++i) {
         solid_angle_ += triangle_solid_angle(vertex(0), vertex(i), vertex(i + 1));
     }

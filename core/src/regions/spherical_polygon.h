@@ -14,6 +14,10 @@ namespace shlight {
 /// A plane is seen edge-on if its distance from the origin is at most this part of that of its farthest point.
 inline constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
 
+/// Distance of the origin from the polygon's plane times twice its area, positive if the vertices are seen
+/// counter-clockwise from the origin's antipode, that is with the interior on the left of each edge; 0 if edge-on.
+double plane_side(std::span<const Vec3d> vertices);
+
 class SphericalPolygon {
   public:
     /// vertices: k ≥ 3, planar, in either winding. clip: keep only z ≥ 0.
