@@ -24,7 +24,7 @@ Array = npt.NDArray[Any]
 
 def forward(centers: Array, radii: Array, bsdf: Bsdf, cos_theta_o: Array) -> tuple[Array, SphereGradient]:
     """Radiance (n, 3) of n sphere lights, and what `backward` takes."""
-    return shlight.shade_spheres(centers, radii, bsdf, cos_theta_o, gradient=True)
+    return shlight.shade_spheres(centers, radii, bsdf, cos_theta_o, gradient="places")
 
 
 def backward(gradient: SphereGradient, by_radiance: Array) -> tuple[Array, Array]:

@@ -211,10 +211,16 @@ def shade_disks(
     with_effort: bool,
 ) -> _Shaded: ...
 def shade_spheres_gradient(
-    centers: _Floats, radii: _Floats, bsdf: Bsdf, cos_theta_o: _Floats, azimuth: _Floats, threads: int
+    centers: _Floats,
+    radii: _Floats,
+    bsdf: Bsdf,
+    cos_theta_o: _Floats,
+    azimuth: _Floats,
+    with_roughness: bool,
+    threads: int,
 ) -> tuple[_Floats, _Floats, _Floats]: ...
 def shade_polygons_gradient(
-    vertices: _Floats, bsdf: Bsdf, cos_theta_o: _Floats, azimuth: _Floats, threads: int
+    vertices: _Floats, bsdf: Bsdf, cos_theta_o: _Floats, azimuth: _Floats, with_roughness: bool, threads: int
 ) -> tuple[_Floats, _Floats]: ...
 
 class RenderCancelled(RuntimeError): ...  # noqa: N818  the name says what happened, not what went wrong

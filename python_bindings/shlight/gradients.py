@@ -28,7 +28,8 @@ class SphereGradient(NamedTuple):
     radius: Floats
     """(..., 3)"""
     roughness: Floats
-    """(..., 3): by the roughness of all GGX lobes of the material together, at given weights of the lobes."""
+    """(..., 3): by the roughness of all GGX lobes of the material together, at given weights of the lobes.
+    (..., 0) with gradient="places"."""
 
 
 class PolygonGradient(NamedTuple):

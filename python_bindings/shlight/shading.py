@@ -89,7 +89,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
-    gradient: Literal[True],
+    gradient: Literal[True, "places"],
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, SphereGradient]: ...
 @overload
@@ -100,7 +100,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
-    gradient: Literal[True],
+    gradient: Literal[True, "places"],
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort, SphereGradient]: ...
 @names_rows
@@ -119,7 +119,7 @@ def shade_spheres(
     seed: int | None = None,
     sampling: Sampling | None = None,
     return_effort: bool = False,
-    gradient: bool = False,
+    gradient: bool | Literal["places"] = False,
 ) -> Any:
     """Radiance reflected of sphere lights of unit radiance towards ω_o = (sinθ_o, 0, cosθ_o), clipped by the horizon.
 
@@ -136,7 +136,8 @@ def shade_spheres(
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
     With gradient also a SphereGradient, of the arrays' type: the exact derivatives of the reflected radiance, whatever
-    the tolerance of the radiance returned. Those of mirrors are 0; method and order must then be "auto".
+    the tolerance of the radiance returned. Those of mirrors are 0; method and order must then be "auto". With gradient
+    "places" those by roughness are left out, which take most of the time.
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
     derived = _checked_gradient(gradient, order, method)
@@ -163,9 +164,11 @@ def shade_spheres(
         flat = shade(*lights, checked_threads(threads))
     if not derived:
         return _result(*flat, shape, wanted)
-    center, size, rough = _core.shade_spheres_gradient(spheres, radius, bsdf, *views, checked_threads(threads))
+    center, size, rough = _core.shade_spheres_gradient(
+        spheres, radius, bsdf, *views, derived == "all", checked_threads(threads)
+    )
     moved = _seen_by(-phi[..., None], center.reshape(*shape, 3, 3))
-    made = SphereGradient(moved, size.reshape(*shape, 3), rough.reshape(*shape, 3))
+    made = SphereGradient(moved, size.reshape(*shape, 3), rough.reshape(*shape, rough.shape[-1]))
     return (*_parts(_result(*flat, shape, wanted)), made)
 
 
@@ -196,7 +199,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
-    gradient: Literal[True],
+    gradient: Literal[True, "places"],
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, PolygonGradient]: ...
 @overload
@@ -206,7 +209,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
-    gradient: Literal[True],
+    gradient: Literal[True, "places"],
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort, PolygonGradient]: ...
 @names_rows
@@ -224,7 +227,7 @@ def shade_polygons(
     seed: int | None = None,
     sampling: Sampling | None = None,
     return_effort: bool = False,
-    gradient: bool = False,
+    gradient: bool | Literal["places"] = False,
 ) -> Any:
     """Like shade_spheres, for planar polygons.
 
@@ -258,9 +261,9 @@ def shade_polygons(
         flat = shade(*lights, checked_threads(threads))
     if not derived:
         return _result(*flat, shape, wanted)
-    moved, rough = _core.shade_polygons_gradient(polygons, bsdf, *views, checked_threads(threads))
+    moved, rough = _core.shade_polygons_gradient(polygons, bsdf, *views, derived == "all", checked_threads(threads))
     moved = _seen_by(-phi[..., None, None], moved.reshape(*shape, 3, *v.shape[-2:]))
-    made = PolygonGradient(moved, rough.reshape(*shape, 3))
+    made = PolygonGradient(moved, rough.reshape(*shape, rough.shape[-1]))
     return (*_parts(_result(*flat, shape, wanted)), made)
 
 
@@ -375,13 +378,19 @@ def _broadcast_with(added: int, shapes: dict[str, tuple[int, ...]]) -> tuple[int
     return shape
 
 
-def _checked_gradient(gradient: bool, order: int | Literal["auto"], method: str) -> bool:
-    if not checked_flag("gradient", gradient):
-        return False
+def _checked_gradient(
+    gradient: bool | Literal["places"], order: int | Literal["auto"], method: str
+) -> Literal["", "places", "all"]:
+    """Which derivatives are wanted."""
+    if not isinstance(gradient, str) and not checked_flag("gradient", gradient):
+        return ""
     for name, value in (("order", order), ("method", method)):
         if not (isinstance(value, str) and value == "auto"):
             raise ValueError(f"{name} must be 'auto' with gradient")
-    return True
+    if not isinstance(gradient, str):
+        return "all"
+    checked_name("gradient", gradient, ("places",))
+    return "places"
 
 
 def _parts(result: Any) -> tuple[Any, ...]:

@@ -61,14 +61,15 @@ py::tuple sphere_coefficients_with_gradient(const Array<T>& centers, const Array
 
 template <class T>
 py::tuple sphere_gradients(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf,
-                           const Array<double>& cos_theta_o, const Array<double>& azimuth, int threads) {
+                           const Array<double>& cos_theta_o, const Array<double>& azimuth, bool with_roughness,
+                           int threads) {
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
     const auto views = values(cos_theta_o);
     const auto turns = values(azimuth);
     const LightRows<T> by_center(c.size(), {3, 3});
     const LightRows<T> by_radius(c.size(), {3});
-    const LightRows<T> by_roughness(c.size(), {3});
+    const LightRows<T> by_roughness(c.size(), {with_roughness ? 3 : 0});
     const GradientShader shader(bsdf);
     in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
         shader.spheres(c.subspan(first, count), r.subspan(first, count), part_of(views, first, count),
@@ -80,13 +81,13 @@ py::tuple sphere_gradients(const Array<T>& centers, const Array<T>& radii, const
 
 template <class T>
 py::tuple polygon_gradients(const Array<T>& vertices, const Bsdf& bsdf, const Array<double>& cos_theta_o,
-                            const Array<double>& azimuth, int threads) {
+                            const Array<double>& azimuth, bool with_roughness, int threads) {
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto views = values(cos_theta_o);
     const auto turns = values(azimuth);
     const LightRows<T> by_vertices(v.size() / k, {3, vertices.shape(1), 3});
-    const LightRows<T> by_roughness(v.size() / k, {3});
+    const LightRows<T> by_roughness(v.size() / k, {with_roughness ? 3 : 0});
     const GradientShader shader(bsdf);
     in_chunks(v.size() / k, threads, [&](std::size_t first, std::size_t count) {
         shader.polygons(v.subspan(first * k, count * k), static_cast<int>(k), part_of(views, first, count),
@@ -101,9 +102,11 @@ void bind_gradients_for(py::module_& m) {
           py::arg("radii").noconvert(), py::arg("order"), py::arg("clip"), py::arg("threads"),
           py::arg("out") = py::none());
     m.def("shade_spheres_gradient", &sphere_gradients<T>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
-          py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("azimuth").noconvert(), py::arg("threads"));
+          py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("azimuth").noconvert(),
+          py::arg("with_roughness"), py::arg("threads"));
     m.def("shade_polygons_gradient", &polygon_gradients<T>, py::arg("vertices").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("azimuth").noconvert(), py::arg("threads"));
+          py::arg("cos_theta_o").noconvert(), py::arg("azimuth").noconvert(), py::arg("with_roughness"),
+          py::arg("threads"));
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "sphere_coefficients": (shlight.sphere_coefficients, {**SPHERE, **EXACT}),
     "sphere_coefficients/random": (shlight.sphere_coefficients, {**SPHERE, **RANDOM}),
     "sphere_coefficients/gradient": (shlight.sphere_coefficients, {**SPHERE, **EXACT, "gradient": True}),
-    "shade_spheres/gradient": (shlight.shade_spheres, {**SPHERE, **AUTO, "gradient": True}),
+    "shade_spheres/gradient": (shlight.shade_spheres, {**SPHERE, **AUTO, "gradient": "places"}),
     "shade_polygons/gradient": (shlight.shade_polygons, {**POLYGON, **AUTO, "gradient": True}),
     "evaluate": (shlight.evaluate, {"coefficients": [1.0, 0, 0, 0], "directions": [0.0, 0, 1], "threads": 0}),
     "sh_basis": (shlight.sh_basis, {"directions": [0.0, 0, 1], "order": 3, "dtype": None, "threads": 0, "out": None}),

@@ -182,11 +182,16 @@ def test_types_shapes_and_threads() -> None:
             np.testing.assert_array_equal(a, b)
         if dtype is np.float32:
             single = by
+    places = shlight.shade_spheres(*spheres, bsdf, COSINE, gradient="places")[1]
+    assert places.roughness.shape == (2, 300, 0)
+    for a, b in zip(by[:2], places[:2], strict=True):
+        np.testing.assert_array_equal(a, b)
     for a, b in zip(single, by, strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-3, atol=1e-4 * np.abs(b).max())
     polygons = random_polygons(6, 6).reshape(2, 3, 4, 3)
-    by_polygon = shlight.shade_polygons(polygons, bsdf, [[0.3], [0.9]], gradient=True)[1]
-    assert [x.shape for x in by_polygon] == [(2, 3, 3, 4, 3), (2, 3, 3)]
+    for gradient, channels in ((True, 3), ("places", 0)):
+        by_polygon = shlight.shade_polygons(polygons, bsdf, [[0.3], [0.9]], gradient=gradient)[1]
+        assert [x.shape for x in by_polygon] == [(2, 3, 3, 4, 3), (2, 3, channels)]
 
 
 def test_an_azimuth_turns_gradients_with_the_view() -> None:
@@ -229,6 +234,7 @@ def test_wrong_arguments_are_named() -> None:
         "method must be 'auto'": lambda: shlight.shade_spheres(
             [0, 0, 2], 1, bsdf, 1, method="quadrature", gradient=True
         ),
+        "gradient must be one of 'places'": lambda: shlight.shade_spheres([0, 0, 2], 1, bsdf, 1, gradient="all"),
         r"radii\[1\]": lambda: shlight.shade_spheres([0, 0, 2], [1, 3], bsdf, 1, gradient=True),
     }.items():
         with pytest.raises(ValueError, match=pattern):
