@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -33,8 +34,8 @@ class View {
         for (const Lobe& lobe : bsdf.lobes()) {
             const Rgb weight = lobe.scale(static_cast<float>(cosine_));
             if (weight != Rgb(0) && !is_mirror(lobe.shape)) {
-                shapes_.push_back(is_anisotropic(lobe.shape) ? with_parameter(lobe.shape, azimuth_) : lobe.shape);
-                weights_.push_back({weight.x, weight.y, weight.z});
+                lobes_.push_back({is_anisotropic(lobe.shape) ? with_parameter(lobe.shape, azimuth_) : lobe.shape,
+                                  {weight.x, weight.y, weight.z}});
             }
         }
     }
@@ -43,16 +44,16 @@ class View {
         return views.cosine_of(light) == cosine_ && views.azimuth_of(light) == azimuth_;
     }
 
-    /// Sums along an arc, in each channel.
-    std::array<ArcDensity, 3> sums(const Arc<double>& arc, const ArcDensity& weights) const {
-        std::array<ArcDensity, 3> sums{};
-        for (std::size_t lobe = 0; lobe < shapes_.size(); ++lobe) {
-            const ArcDensity own = arc_sums(shapes_[lobe], cosine_, arc, weights);
-            for (std::size_t channel = 0; channel < 3; ++channel) {
-                for (std::size_t k = 0; k < own.size(); ++k) {
-                    sums[channel][k] += weights_[lobe][channel] * own[k];
-                }
-            }
+    /// Sums along an arc, at once of neighbours of one width, such as the two that make a metal's Fresnel factor.
+    ArcSums sums(const Arc<double>& arc, const std::array<double, 3>& weights) const {
+        ArcSums sums{};
+        for (auto first = lobes_.begin(); first != lobes_.end();) {
+            const auto last = std::find_if(first, lobes_.end(), [&](const WeightedLobe& lobe) {
+                return lobe_width(lobe.shape) != lobe_width(first->shape);
+            });
+            const ArcSums own = arc_sums({first, last}, cosine_, arc, weights);
+            std::transform(sums.begin(), sums.end(), own.begin(), sums.begin(), std::plus<>());
+            first = last;
         }
         return sums;
     }
@@ -60,10 +61,10 @@ class View {
     /// α = roughness², so that dα is 2√α of roughness.
     Vec3d by_roughness(In<Arc<double>> boundary) const {
         Vec3d sum(0);
-        for (std::size_t lobe = 0; lobe < shapes_.size() && !boundary.empty(); ++lobe) {
-            if (const auto* ggx = std::get_if<GgxShape>(&shapes_[lobe])) {
+        for (const WeightedLobe& lobe : lobes_) {
+            if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape); ggx != nullptr && !boundary.empty()) {
                 const double by_alpha = boundary_integral_by_alpha(*ggx, cosine_, boundary).value;
-                const auto [red, green, blue] = weights_[lobe];
+                const auto [red, green, blue] = lobe.weight;
                 sum += Vec3d(red, green, blue) * (2 * std::sqrt(ggx->alpha) * by_alpha);
             }
         }
@@ -72,8 +73,7 @@ class View {
 
   private:
     double cosine_, azimuth_;
-    std::vector<LobeShape> shapes_;
-    std::vector<std::array<double, 3>> weights_;
+    std::vector<WeightedLobe> lobes_;
 };
 
 /// The view of a light, `last` if it is the same.
@@ -97,9 +97,9 @@ template <class T>
 void move_sphere(const View& view, const Arc<double>& arc, double radius, T* by_center, T* by_radius) {
     const double distance = radius / arc.sine;
     const double stretch = arc.cosine > 0 ? arc.sine / (arc.cosine * distance) : 0;  // of σ by r, times sinσ
-    const std::array<ArcDensity, 3> sums = view.sums(arc, {arc.sine, 1, 1});
+    const ArcSums sums = view.sums(arc, {arc.sine, 1, 1});
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        const auto [one, cosine, sine] = sums[channel];
+        const auto [one, cosine, sine] = std::array{sums[3 * channel], sums[3 * channel + 1], sums[3 * channel + 2]};
         const Vec3d across = cosine * arc.middle + sine * glm::cross(arc.axis, arc.middle);
         write(arc.sine / distance * across - arc.sine * stretch * one * arc.axis, by_center + 3 * channel);
         by_radius[channel] = static_cast<T>(stretch * one);
@@ -143,9 +143,9 @@ void add_edge(const View& view, const Vec3d& a, const Vec3d& b, ColorByVector& b
     if (!(edge.sine > 0 && edge.kept.half > 0)) {
         return;
     }
-    const std::array<ArcDensity, 3> sums = view.sums(edge.kept, {0, 1, 1 / edge.kept.half});
+    const ArcSums sums = view.sums(edge.kept, {0, 1, 1 / edge.kept.half});
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        const auto [one, cosine, sine] = sums[channel];
+        const auto [one, cosine, sine] = std::array{sums[3 * channel], sums[3 * channel + 1], sums[3 * channel + 2]};
         const double with_a = std::sin(edge.to) * cosine - std::cos(edge.to) * sine;
         const double with_b = std::sin(edge.from) * cosine + std::cos(edge.from) * sine;
         by_a[channel] -= with_a / (edge.sine * glm::length(a)) * edge.kept.axis;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <variant>
 
+#include "lobes/boundary_kernel.h"
 #include "lobes/boundary_path.h"
 #include "lobes/boundary_quadrature.h"
 
@@ -15,40 +18,85 @@ constexpr double kRelativeError = 1e-8;
 /// Roundings of f·cos, as a part of it.
 constexpr double kRounding = 1e-14;
 
+void add_lobe(const WeightedLobe& lobe, const ArcDensity& own, ArcSums& sums) {
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        sums[k] += lobe.weight[k / 3] * own[k % 3];
+    }
+}
+
 /// f·cos, times 1, cos ψ and sin ψ, at points of an arc.
 class DirectionSums {
   public:
-    using Values = ArcDensity;
+    using Values = ArcSums;
 
-    DirectionSums(const LobeShape& shape, double cos_theta_o, const Arc<double>& arc, const ArcDensity& weights)
-        : shape_(&shape), cos_o_(cos_theta_o), arc_(arc), weights_(weights) {}
+    DirectionSums(std::span<const WeightedLobe> lobes, double cos_theta_o, const Arc<double>& arc,
+                  const std::array<double, 3>& weights)
+        : lobes_(lobes), cos_o_(cos_theta_o), arc_(arc), weights_(weights) {}
 
     void densities(const ArcPath& path, std::span<const double> parameters, std::span<Values> values) const {
         const Vec3d u = arc_.sine * arc_.middle;
         const DirectionPath directions = {arc_.cosine * arc_.axis, u, glm::cross(arc_.axis, u), path.frame(),
                                           path.columns().flatness};
-        direction_densities(*shape_, cos_o_, directions, parameters, values);
+        std::fill(values.begin(), values.end(), Values{});
+        std::array<ArcDensity, kBoundaryPoints> own;
+        for (const WeightedLobe& lobe : lobes_) {
+            direction_densities(lobe.shape, cos_o_, directions, parameters, std::span(own).first(values.size()));
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                add_lobe(lobe, own[i], values[i]);
+            }
+        }
     }
     double size(const Values& sum) const {
-        return std::max(
-            {weights_[0] * std::abs(sum[0]), weights_[1] * std::abs(sum[1]), weights_[2] * std::abs(sum[2])});
+        double largest = 0;
+        for (std::size_t k = 0; k < sum.size(); ++k) {
+            largest = std::max(largest, weights_[k % 3] * std::abs(sum[k]));
+        }
+        return largest;
     }
     double scale(const Values& sum) const { return size(sum) + std::numeric_limits<double>::min(); }
-    double tolerance(const Values& sum) const { return kRelativeError * size(sum) + kRounding * std::abs(sum[0]); }
+    double tolerance(const Values& sum) const {
+        const double whole = std::max({std::abs(sum[0]), std::abs(sum[3]), std::abs(sum[6])});
+        return kRelativeError * size(sum) + kRounding * whole;
+    }
 
   private:
-    const LobeShape* shape_;
+    std::span<const WeightedLobe> lobes_;
     double cos_o_;
     Arc<double> arc_;
-    ArcDensity weights_;
+    std::array<double, 3> weights_;
 };
+
+bool is_lambert(const WeightedLobe& lobe) {
+    return std::holds_alternative<LambertShape>(lobe.shape);
+}
+
+/// f·cos = z/π is a linear function of cos ψ and sin ψ.
+ArcDensity lambert_sums(const Arc<double>& arc) {
+    const double h = arc.half;
+    const double sine = std::sin(h);
+    const double product = sine * std::cos(h);
+    const double square = h < 1e-3 ? 2.0 / 3 * h * h * h * (1 - h * h / 5) : h - product;  // ∫ sin² ψ dψ
+    const double level = arc.cosine * arc.axis.z;
+    const double cosine = arc.sine * arc.middle.z;
+    const double across = arc.sine * glm::cross(arc.axis, arc.middle).z;
+    return {2 * (level * h + cosine * sine) / std::numbers::pi,
+            (2 * level * sine + cosine * (h + product)) / std::numbers::pi, across * square / std::numbers::pi};
+}
 
 }  // namespace
 
-ArcDensity arc_sums(const LobeShape& shape, double cos_theta_o, const Arc<double>& arc, const ArcDensity& weights) {
+ArcSums arc_sums(std::span<const WeightedLobe> lobes, double cos_theta_o, const Arc<double>& arc,
+                 const std::array<double, 3>& weights) {
+    if (std::all_of(lobes.begin(), lobes.end(), is_lambert)) {
+        ArcSums sums{};
+        for (const WeightedLobe& lobe : lobes) {
+            add_lobe(lobe, lambert_sums(arc), sums);
+        }
+        return sums;
+    }
     const Vec3d view = resolved_view(cos_theta_o);
-    BoundaryQuadrature<DirectionSums> sums(DirectionSums(shape, view.z, arc, weights));
-    sums.add(ArcPath(arc, view, lobe_width(shape)), 1);
+    BoundaryQuadrature<DirectionSums> sums(DirectionSums(lobes, view.z, arc, weights));
+    sums.add(ArcPath(arc, view, lobe_width(lobes[0].shape)), 1);
     sums.refine();
     return sums.sum();
 }

@@ -4,14 +4,27 @@
 // moves: the normal velocity of any circle that stays a circle is a linear function of 1, cos ψ and sin ψ.
 #pragma once
 
-#include "lobes/boundary_kernel.h"
+#include <array>
+#include <span>
+
 #include "regions/arcs.h"
+#include "shlight/lobe_shape.h"
 
 namespace shlight {
 
-/// ∫ f·cos (1, cos ψ, sin ψ) dψ, ψ being the angle from the arc's middle. weights: what an error of each counts; the
-/// sums err by about 1e-8 of the largest weighted one.
-/// Precondition: no mirror; the arc lies above the horizon.
-ArcDensity arc_sums(const LobeShape& shape, double cos_theta_o, const Arc<double>& arc, const ArcDensity& weights);
+/// A lobe of a material, and what its f·cos counts in RGB.
+struct WeightedLobe {
+    LobeShape shape;
+    std::array<double, 3> weight;
+};
+
+/// ∫ f·cos (1, cos ψ, sin ψ) dψ of R, of G and of B, ψ being the angle from the arc's middle.
+using ArcSums = std::array<double, 9>;
+
+/// The sums of all lobes, which have one lobe_width(). weights: what an error of each of the three counts; the sums err
+/// by about 1e-8 of the largest weighted one.
+/// Precondition: no mirrors; the arc lies above the horizon.
+ArcSums arc_sums(std::span<const WeightedLobe> lobes, double cos_theta_o, const Arc<double>& arc,
+                 const std::array<double, 3>& weights);
 
 }  // namespace shlight
