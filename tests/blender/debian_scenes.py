@@ -22,7 +22,6 @@ GOLD = (0.8, 0.6, 0.2)
 def lit_by(studio, kind, energy, rotation=(0, 0, 0), scale=(1, 1, 1), **values):
     studio.plane(material=studio.material())
     studio.ball(0.5, studio.material(Color=GOLD), location=(-0.8, 0.2, 0.5))
-    studio.scene.render.resolution_x = 48
     return studio.lamp(kind, energy, (0.3, -0.4, 1.7), rotation_euler=rotation, scale=scale, **values)
 
 
@@ -175,6 +174,7 @@ def dark(studio):
 
 def panoramic(studio):
     lit_by(studio, "POINT", 60)
+    studio.resolution(48, 48)
     camera = studio.scene.camera.data
     camera.type = "PANO"
     camera.cycles.panorama_type = "FISHEYE_EQUISOLID"
@@ -230,6 +230,7 @@ results = {}
 for build in SCENES:
     folder = FOLDER / build.__name__
     studio = Studio(folder)
+    studio.resolution(36, 27)
     studio.camera()
     build(studio)
     try:

@@ -71,6 +71,7 @@ def set_up():
     scene.shlight.max_bounces = scene.shlight.preview_max_bounces = 0
     scene.view_settings.view_transform = "Raw"
     scene.render.preview_pixel_size = "2"
+    scene.shlight.preview_max_samples = 8
     bpy.ops.mesh.primitive_plane_add(size=8, location=(0, 0, -1))
     bpy.context.object.name = "Floor"
     space = area().spaces[0]

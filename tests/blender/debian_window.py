@@ -59,7 +59,7 @@ def steps():
     yield
     yield from note_nodes(scene)
     viewport = area_of("VIEW_3D").spaces[0]
-    for shading in ("RENDERED", "MATERIAL", "RENDERED", "SOLID"):
+    for shading in ("RENDERED", "WIREFRAME", "RENDERED", "SOLID"):
         viewport.shading.type = shading
         bpy.data.objects["Cube"].location.x += 0.1
         yield

@@ -227,10 +227,14 @@ class Studio:
         glossy = self.material("ShaderNodeBsdfAnisotropic", Color=(0.8, 0.8, 0.8), Roughness=0.3, distribution="GGX")
         self.plane(2.2, glossy, location=(0.3, -0.6, 0.05))
         self.camera(location=(1.5, -4, 3.5), target=(0.2, -0.9, 0), lens=60)
-        self.scene.render.resolution_x, self.scene.render.resolution_y = 32, 24
+        self.resolution(32, 24)
         self.scene.cycles.samples = 1024
 
     # --- pictures
+
+    def resolution(self, width: int, height: int) -> None:
+        """Sets the size of the pictures."""
+        self.scene.render.resolution_x, self.scene.render.resolution_y = width, height
 
     def picture(self, pixels: Any, *, is_float: bool = True) -> Any:
         """An image of pixels (height, width, 3), row 0 at the bottom; bytes are encoded as sRGB."""

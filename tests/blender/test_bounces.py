@@ -11,8 +11,9 @@ from shlight_blender.background import use_cycles
 from shlight_blender.compare.render import bounces_of
 
 
-def compare(studio: Any, samples: int = 512, **bounds: float) -> None:
+def compare(studio: Any, samples: int = 1024, **bounds: float) -> None:
     """Both pictures with bounces as the scene's settings have them."""
+    studio.resolution(32, 24)
     use_cycles(studio.scene, samples, 0, bounces_of(studio.scene))
     studio.compare(**bounds)
 

@@ -3,32 +3,32 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import bpy
 import numpy as np
 import pytest
 
+SHADERS = ("ShaderNodeBsdfDiffuse", "ShaderNodeBsdfPrincipled")
+# The cases that run without `--all`: each pair of a turn, a shader and a light.
+QUICK = {(-1.0, -1, SHADERS[0], "lamp"), (-1.0, -1, SHADERS[1], "world")}
+QUICK |= {(0.3, 1, SHADERS[0], "world"), (0.3, 1, SHADERS[1], "lamp")}
 
-@pytest.mark.parametrize("light", ["world", "lamp"])
-@pytest.mark.parametrize("shader", ["ShaderNodeBsdfDiffuse", "ShaderNodeBsdfPrincipled"])
+
 @pytest.mark.parametrize(
-    ("turn", "scale"),
+    ("turn", "mirror", "shader", "light"),
     [
-        pytest.param(-1.0, (1, 1, 1), marks=pytest.mark.slow, id="inwards"),
-        pytest.param(-1.0, (1, -1, 1), id="inwards-mirrored"),
-        pytest.param(0.3, (1, 1, 1), id="leaning"),
-        pytest.param(0.3, (1, -1, 1), marks=pytest.mark.slow, id="leaning-mirrored"),
+        pytest.param(*case, marks=() if case in QUICK else pytest.mark.slow)
+        for case in itertools.product((-1.0, 0.3), (1, -1), SHADERS, ("world", "lamp"))
     ],
 )
-def test_normals_on_the_back_of_their_faces(
-    studio: Any, light: str, shader: str, scale: tuple[float, ...], turn: float
-) -> None:
+def test_normals_on_the_back_of_their_faces(studio: Any, turn: float, mirror: int, shader: str, light: str) -> None:
     """A ball whose normals point inwards, which Cycles draws black, or lean over so that some of them do.
 
     Turned to the viewer, the first was as bright as any other ball.
     """
-    made = studio.ball(material=studio.material(shader), rings=8, scale=scale)
+    made = studio.ball(material=studio.material(shader), rings=8, scale=(1, mirror, 1))
     normals = np.array([vertex.co for vertex in made.data.vertices])
     normals = -normals if turn < 0 else turn * normals + (0.0, 0.0, 1.0)
     made.data.polygons.foreach_set("use_smooth", [True] * len(made.data.polygons))
@@ -38,6 +38,7 @@ def test_normals_on_the_back_of_their_faces(
         studio.world((1.0, 0.8, 0.6))
     else:
         studio.area(200, (2, -2, 2), rotation_euler=(0.8, 0.3, 0.5))
+    studio.resolution(32, 24)
     studio.scene.cycles.samples = 512
     if turn > 0:
         studio.compare(mean=5e-3, error=1e-3)

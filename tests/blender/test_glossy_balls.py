@@ -16,7 +16,7 @@ from shlight.metrics import mean_ratio, reference_rel_mse, rel_mse
 from shlight_blender.compare.render import without_shadows
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "glossy_balls.py"
-SIDE = 64  # pixels of a picture, which one ball fills
+SIDE = 40  # pixels of a picture, which one ball fills
 LENS = 270.0  # focal length [mm] that makes it do so
 SAMPLES = {0.1: 256}  # of each half of the reference, where it takes more than 128
 QUICK = {

