@@ -208,5 +208,5 @@ def disable():
     found["operator_left"] = hasattr(bpy.types, "SHLIGHT_OT_compare")
 
 
-panel.SHLIGHT_RENDER_PT_compare.bl_options = set()
+panel.comparison.bl_options = set()
 start(steps(), found)

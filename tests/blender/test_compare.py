@@ -368,7 +368,7 @@ def test_the_panel_shows_progress_and_what_was_found(studio: Any, monkeypatch: p
     drawn = SimpleNamespace(layout=layout)
     running = SimpleNamespace(stage=SimpleNamespace(name="Reference", seconds=3.0, share=0.25))
     monkeypatch.setattr(job.session, "job", running)
-    panel.SHLIGHT_RENDER_PT_compare.draw(drawn, context)
+    panel.comparison.draw(drawn, context)
     assert said == ["Reference (3 s), 25%", "Cancel"]
     monkeypatch.setattr(job.session, "job", None)
     part = {"seconds": 1.0, "samples": 7, "settings": {"max_bounces": 4}}
@@ -377,7 +377,7 @@ def test_the_panel_shows_progress_and_what_was_found(studio: Any, monkeypatch: p
     black = np.zeros((2, 2, 4), np.float32)
     monkeypatch.setattr(results, "last", results.Results("Scene", figures, Path(), black, black, black[..., 0]))
     said.clear()
-    panel.SHLIGHT_RENDER_PT_compare.draw(drawn, context)
+    panel.comparison.draw(drawn, context)
     assert {"denoise", "reference_seconds", "split", "Comparison", "Difference"} <= set(said)
     assert {"Cycles: 1.00 s, 7 samples", "1  Object 'Box': -50 %", "The report names nothing here"} <= set(said)
     assert "Reference" not in said

@@ -138,15 +138,15 @@ def test_a_comparison_draws_the_same_picture(paper: Any, measured: Path, tmp_pat
 
 
 def test_the_panel_says_where_the_file_is_missing(paper: Any, measured: Path) -> None:
-    from shlight_blender.ui.data import SHLIGHT_MATERIAL_PT_measured as Panel
+    from shlight_blender.ui.data import measured as panel
 
     material, lines = bpy.data.materials["Paper"], []
     layout = SimpleNamespace(prop=lambda owner, name: getattr(owner, name), label=lambda text, **_: lines.append(text))
     context = SimpleNamespace(engine="SHLIGHT", material=material)
-    assert Panel.poll(context)
+    assert panel.poll(context)
     for path, count in (("", 0), (str(measured), 0), (str(measured.with_name("gone.bin")), 1)):
         material.shlight.measured_file = path
         lines.clear()
-        Panel.draw(SimpleNamespace(layout=layout), context)
+        panel.draw(SimpleNamespace(layout=layout), context)
         assert len(lines) == count
-    assert not Panel.poll(SimpleNamespace(engine="SHLIGHT", material=None))
+    assert not panel.poll(SimpleNamespace(engine="SHLIGHT", material=None))

@@ -64,16 +64,16 @@ def test_the_panels_of_a_lamp_show_what_makes_its_light(studio: Any, kind: str, 
     light = bpy.data.lights.new(kind, kind)
     switch = compat.shadow_switch(light)
     assert switch is not None
-    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(data.SHLIGHT_LIGHT_PT_light, light=light).shown
+    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(data.lamp, light=light).shown
     light.use_nodes = True
-    assert "ShaderNodeOutputLight.Surface" in drawn_by(data.SHLIGHT_LIGHT_PT_nodes, light=light).shown
+    assert "ShaderNodeOutputLight.Surface" in drawn_by(data.lamp_nodes, light=light).shown
 
 
 def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) -> None:
     studio.camera()
     kinds = {"visible_camera", "visible_diffuse", "visible_glossy"}
     shown = {
-        thing.name: drawn_by(data.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
+        thing.name: drawn_by(data.ray_visibility, object=thing)
         for thing in (studio.area(), studio.box(), studio.scene.camera)
     }
     assert shown["Area"].shown == kinds
@@ -121,9 +121,9 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
     box.is_shadow_catcher = True
     context = {"scene": studio.scene, "region": SimpleNamespace(width=300)}
     context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # a Blender without a window has 0
-    assert "Render to see" in drawn_by(report.SHLIGHT_RENDER_PT_report, **context).text
+    assert "Render to see" in drawn_by(report.report, **context).text
     studio.render("SHLIGHT")
-    shown = drawn_by(report.SHLIGHT_RENDER_PT_report, **context)
+    shown = drawn_by(report.report, **context)
     assert "shadow catchers are not supported" in " ".join(shown.text.split()).lower()
     node = next(place for place in shown.places if "node" in place)
     assert node == "Material 'Odd's', node 'Fluff, 'soft''"
@@ -137,15 +137,15 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
     with pytest.raises(RuntimeError, match="'Gone' is not in this view layer"):
         bpy.ops.shlight.show_place(place="Object 'Gone'")
     studio.scene.name = "Another"
-    assert "Render to see" in drawn_by(report.SHLIGHT_RENDER_PT_report, **context).text
+    assert "Render to see" in drawn_by(report.report, **context).text
 
 
 def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
     studio.world()
     context = {"scene": studio.scene, "world": studio.scene.world}
-    assert drawn_by(data.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
-    assert "world_width" not in drawn_by(settings.SHLIGHT_RENDER_PT_light, **context).shown
-    assert drawn_by(data.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
+    assert drawn_by(data.baking, **context).shown == {"world_width"}
+    assert "world_width" not in drawn_by(settings.light, **context).shown
+    assert drawn_by(data.baking, scene=studio.scene, world=None).shown == set()
 
 
 def test_without_the_native_module_the_engine_says_so(

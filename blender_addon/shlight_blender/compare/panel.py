@@ -9,7 +9,7 @@ import bpy
 
 from ..compat import draw_progress
 from ..names import name_of, one_line
-from ..ui.base import EnginePanel, draw_text, with_names_aside
+from ..ui.base import draw_text, panel, with_names_aside
 from ..ui.report import SHLIGHT_OT_show_place, leads_somewhere
 from . import overlay, results
 from .job import CompareError, Job, session
@@ -238,28 +238,22 @@ class SHLIGHT_OT_drag_split(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
 
-class SHLIGHT_RENDER_PT_compare(EnginePanel, bpy.types.Panel):
+@panel("SHLIGHT_RENDER_PT_compare", "Compare with Cycles", closed=True, names_aside=False)
+def comparison(layout: Any, context: Any) -> None:
     """The comparison."""
-
-    bl_label = "Compare with Cycles"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = self.layout
-        if session.job is not None:
-            stage = session.job.stage
-            draw_progress(layout, f"{stage.name} ({stage.seconds:.0f} s)", stage.share)
-            layout.operator(SHLIGHT_OT_cancel_comparison.bl_idname, text="Cancel", icon="X")
-            return
-        settings = context.window_manager.shlight_compare
-        column = with_names_aside(layout.column())
-        column.prop(settings, "denoise", text="Denoise Cycles")
-        column.prop(settings, "reference_seconds")
-        button = layout.operator(SHLIGHT_OT_compare.bl_idname, text="Compare", icon="RENDER_STILL")
-        button.denoise, button.reference_seconds = settings.denoise, settings.reference_seconds
-        if results.are_of(context.scene):
-            _draw_results(layout, context, results.last)
+    if session.job is not None:
+        stage = session.job.stage
+        draw_progress(layout, f"{stage.name} ({stage.seconds:.0f} s)", stage.share)
+        layout.operator(SHLIGHT_OT_cancel_comparison.bl_idname, text="Cancel", icon="X")
+        return
+    settings = context.window_manager.shlight_compare
+    column = with_names_aside(layout.column())
+    column.prop(settings, "denoise", text="Denoise Cycles")
+    column.prop(settings, "reference_seconds")
+    button = layout.operator(SHLIGHT_OT_compare.bl_idname, text="Compare", icon="RENDER_STILL")
+    button.denoise, button.reference_seconds = settings.denoise, settings.reference_seconds
+    if results.are_of(context.scene):
+        _draw_results(layout, context, results.last)
 
 
 def _draw_results(layout: Any, context: Any, found: Any) -> None:
@@ -316,5 +310,5 @@ CLASSES = (
     SHLIGHT_OT_show_comparison,
     SHLIGHT_OT_remove_comparison,
     SHLIGHT_OT_drag_split,
-    SHLIGHT_RENDER_PT_compare,
+    comparison,
 )

@@ -1,28 +1,74 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all panels of the render engine have in common."""
+"""How panels of the render engine are made, and what several of them draw."""
 
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Callable
 from typing import Any
+
+import bpy
 
 from ..running import ENGINE
 
 PIXELS_PER_LETTER = 7.0
+# Tabs of the Properties editor by the part of panels' names, and what of the context a tab is about.
+TABS = {
+    "RENDER": ("render", "scene"),
+    "VIEWLAYER": ("view_layer", "view_layer"),
+    "WORLD": ("world", "world"),
+    "OBJECT": ("object", "object"),
+    "MATERIAL": ("material", "material"),
+    "LIGHT": ("data", "light"),
+}
+# A function that draws, given a layout and the context.
+Draw = Callable[[Any, Any], None]
 
 
-class EnginePanel:
-    """A panel of the render properties."""
+def panel(
+    name: str,
+    label: str,
+    *,
+    parent: str = "",
+    closed: bool = False,
+    names_aside: bool = True,
+    shown: Callable[[Any], bool] = lambda context: True,
+    **headers: Draw,
+) -> Callable[[Draw], Any]:
+    """Makes a panel of what a function draws; the function's name then stands for the panel.
 
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-    COMPAT_ENGINES = {ENGINE}
+    name: as Blender wants it, with the tab (see TABS). names_aside: see `with_names_aside`. shown: of a context with
+    shlight as its engine that has what the tab is about. headers: draw_header and draw_header_preset.
+    """
+    tab, subject = TABS[name.split("_")[1]]
 
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown while shlight is the scene's engine."""
-        return context.engine in cls.COMPAT_ENGINES
+    def poll(_: Any, context: Any) -> bool:
+        return context.engine == ENGINE and bool(getattr(context, subject)) and shown(context)
+
+    def method(draw: Draw, aside: bool) -> Callable[[Any, Any], None]:
+        return lambda own, context: draw(with_names_aside(own.layout) if aside else own.layout, context)
+
+    def made(draw: Draw) -> Any:
+        return type(
+            name,
+            (bpy.types.Panel,),
+            {
+                "__module__": draw.__module__,
+                "__doc__": draw.__doc__,
+                "bl_label": label,
+                "bl_space_type": "PROPERTIES",
+                "bl_region_type": "WINDOW",
+                "bl_context": tab,
+                "bl_parent_id": parent,
+                "bl_options": {"DEFAULT_CLOSED"} if closed else set(),
+                "COMPAT_ENGINES": {ENGINE},
+                "poll": classmethod(poll),
+                "draw": method(draw, names_aside),
+                **{each: method(header, False) for each, header in headers.items()},
+            },
+        )
+
+    return made
 
 
 def with_names_aside(layout: Any) -> Any:

@@ -11,7 +11,7 @@ import bpy
 from .. import record
 from ..names import name_of, with_name
 from ..report import Effect, Message
-from .base import EnginePanel, draw_text
+from .base import draw_text, panel
 
 MOST_PLACES = 4
 ICONS = {Effect.DARK: "ERROR", Effect.LIGHT: "ERROR", Effect.THING: "ERROR"}
@@ -76,43 +76,37 @@ def leads_somewhere(place: str) -> bool:
     return found is not None and found["kind"] in OBJECT_KINDS | {"Material", "World"}
 
 
-class SHLIGHT_RENDER_PT_report(EnginePanel, bpy.types.Panel):
+@panel("SHLIGHT_RENDER_PT_report", "Report", names_aside=False)
+def report(layout: Any, context: Any) -> None:
     """Unsupported features, those with the largest effect first."""
-
-    bl_label = "Report"
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        if not record.shown.is_of(context.scene):
-            self.layout.label(text="Render to see what shlight draws otherwise than Cycles")
-            return
-        if record.shown.scene_error:
-            draw_text(self.layout, context, record.shown.scene_error, "ERROR")
-        messages = [message for message in record.shown.report if message.effect < Effect.SLIGHT]
-        if not messages and not record.shown.scene_error:
-            self.layout.label(text="As Cycles draws it", icon="CHECKMARK")
-        for message in messages:
-            _draw_message(self.layout, context, message)
+    if not record.shown.is_of(context.scene):
+        layout.label(text="Render to see what shlight draws otherwise than Cycles")
+        return
+    if record.shown.scene_error:
+        draw_text(layout, context, record.shown.scene_error, "ERROR")
+    messages = [message for message in record.shown.report if message.effect < Effect.SLIGHT]
+    if not messages and not record.shown.scene_error:
+        layout.label(text="As Cycles draws it", icon="CHECKMARK")
+    for message in messages:
+        _draw_message(layout, context, message)
 
 
-class SHLIGHT_RENDER_PT_report_slight(EnginePanel, bpy.types.Panel):
+def _slight() -> list[Message]:
+    return [message for message in record.shown.report if message.effect == Effect.SLIGHT]
+
+
+@panel(
+    "SHLIGHT_RENDER_PT_report_slight",
+    "Hardly Seen",
+    parent="SHLIGHT_RENDER_PT_report",
+    closed=True,
+    names_aside=False,
+    shown=lambda context: record.shown.is_of(context.scene) and bool(_slight()),
+)
+def report_slight(layout: Any, context: Any) -> None:
     """What is hardly seen."""
-
-    bl_label = "Hardly Seen"
-    bl_parent_id = "SHLIGHT_RENDER_PT_report"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown if there is anything."""
-        slight = any(message.effect == Effect.SLIGHT for message in record.shown.report)
-        return super().poll(context) and slight and record.shown.is_of(context.scene)
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        for message in record.shown.report:
-            if message.effect == Effect.SLIGHT:
-                _draw_message(self.layout, context, message)
+    for message in _slight():
+        _draw_message(layout, context, message)
 
 
 def _draw_message(layout: Any, context: Any, message: Message) -> None:
@@ -127,4 +121,4 @@ def _draw_message(layout: Any, context: Any, message: Message) -> None:
         box.label(text=f"and {len(message.places) - MOST_PLACES} more", icon="BLANK1")
 
 
-CLASSES = (SHLIGHT_OT_show_place, SHLIGHT_RENDER_PT_report, SHLIGHT_RENDER_PT_report_slight)
+CLASSES = (SHLIGHT_OT_show_place, report, report_slight)

@@ -10,7 +10,7 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
-from .base import EnginePanel, with_names_aside
+from .base import panel
 
 PRESETS = Path(__file__).with_name("presets")
 PRESET_SETTINGS = (
@@ -48,146 +48,99 @@ class SHLIGHT_OT_add_preset(AddPresetBase, bpy.types.Operator):
     preset_subdir = SHLIGHT_PT_presets.preset_subdir
 
 
-class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
+def _props(layout: Any, owner: Any, *names: str) -> None:
+    for name in names:
+        layout.prop(owner, name)
+
+
+@panel(
+    "SHLIGHT_RENDER_PT_sampling",
+    "Sampling",
+    draw_header_preset=lambda layout, context: SHLIGHT_PT_presets.draw_panel_header(layout),
+)
+def sampling(layout: Any, context: Any) -> None:
     """How many camera rays pixels get."""
-
-    bl_label = "Sampling"
-
-    def draw_header_preset(self, context: Any) -> None:
-        """Draws the button of the presets."""
-        SHLIGHT_PT_presets.draw_panel_header(self.layout)
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        settings = context.scene.shlight
-        layout.prop(settings, "noise_threshold")
-        column = layout.column(align=True)
-        if settings.pixel_samples:
-            column.prop(settings, "pixel_samples")
-        else:
-            column.prop(settings, "max_samples")
-            column.prop(settings, "min_samples")
-        layout.prop(settings, "time_limit")
-        layout.prop(settings, "use_denoising")
+    settings = context.scene.shlight
+    layout.prop(settings, "noise_threshold")
+    samples = ["pixel_samples"] if settings.pixel_samples else ["max_samples", "min_samples"]
+    _props(layout.column(align=True), settings, *samples)
+    _props(layout, settings, "time_limit", "use_denoising")
 
 
-class SHLIGHT_RENDER_PT_sampling_viewport(EnginePanel, bpy.types.Panel):
+@panel("SHLIGHT_RENDER_PT_sampling_viewport", "Viewport", parent="SHLIGHT_RENDER_PT_sampling", closed=True)
+def sampling_viewport(layout: Any, context: Any) -> None:
     """The same of rendered viewports."""
-
-    bl_label = "Viewport"
-    bl_parent_id = "SHLIGHT_RENDER_PT_sampling"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        settings = context.scene.shlight
-        layout.prop(settings, "preview_noise_threshold")
-        column = layout.column(align=True)
-        column.prop(settings, "preview_max_samples")
-        column.prop(settings, "preview_min_samples")
-        layout.prop(settings, "preview_time_limit")
-        layout.prop(settings, "preview_use_denoising")
-        layout.prop(context.scene.render, "preview_pixel_size")
+    settings = context.scene.shlight
+    layout.prop(settings, "preview_noise_threshold")
+    _props(layout.column(align=True), settings, "preview_max_samples", "preview_min_samples")
+    _props(layout, settings, "preview_time_limit", "preview_use_denoising")
+    layout.prop(context.scene.render, "preview_pixel_size")
 
 
-class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
-    """Paths of light, and the precision of its integration."""
-
-    bl_label = "Light"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        column = layout.column(align=True)
-        for name in ("max_bounces", "glossy_bounces", "transmission_bounces"):
-            column.prop(context.scene.shlight, name)
-        cycles = getattr(context.scene, "cycles", None)
-        if cycles is not None:
-            column.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
-        layout.prop(context.scene.shlight, "preview_max_bounces", text="Viewport")
+@panel("SHLIGHT_RENDER_PT_light", "Light", closed=True)
+def light(layout: Any, context: Any) -> None:
+    """Paths of light."""
+    column = layout.column(align=True)
+    _props(column, context.scene.shlight, "max_bounces", "glossy_bounces", "transmission_bounces")
+    cycles = getattr(context.scene, "cycles", None)
+    if cycles is not None:
+        column.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
+    layout.prop(context.scene.shlight, "preview_max_bounces", text="Viewport")
 
 
-class SHLIGHT_RENDER_PT_light_advanced(EnginePanel, bpy.types.Panel):
-    """Settings that are rarely changed."""
-
-    bl_label = "Advanced"
-    bl_parent_id = "SHLIGHT_RENDER_PT_light"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        settings = context.scene.shlight
-        column = layout.column()
-        column.active = settings.order == "AUTO"
-        column.prop(settings, "tolerance")
-        layout.prop(settings, "order")
+@panel("SHLIGHT_RENDER_PT_light_advanced", "Advanced", parent="SHLIGHT_RENDER_PT_light", closed=True)
+def light_advanced(layout: Any, context: Any) -> None:
+    """The precision with which light is integrated."""
+    settings = context.scene.shlight
+    column = layout.column()
+    column.active = settings.order == "AUTO"
+    column.prop(settings, "tolerance")
+    layout.prop(settings, "order")
 
 
-class SHLIGHT_RENDER_PT_shadows(EnginePanel, bpy.types.Panel):
+@panel(
+    "SHLIGHT_RENDER_PT_shadows",
+    "Shadows",
+    draw_header=lambda layout, context: layout.prop(context.scene.shlight, "use_shadows", text=""),
+)
+def shadows(layout: Any, context: Any) -> None:
     """Shadows."""
-
-    bl_label = "Shadows"
-
-    def draw_header(self, context: Any) -> None:
-        """Draws the switch."""
-        self.layout.prop(context.scene.shlight, "use_shadows", text="")
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        settings = context.scene.shlight
-        layout.active = settings.use_shadows
-        layout.prop(settings, "shadow_rays")
+    layout.active = context.scene.shlight.use_shadows
+    layout.prop(context.scene.shlight, "shadow_rays")
 
 
-class SHLIGHT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
+@panel("SHLIGHT_RENDER_PT_film", "Film", closed=True)
+def film(layout: Any, context: Any) -> None:
     """Film."""
-
-    bl_label = "Film"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        layout.prop(context.scene.render, "film_transparent", text="Transparent")
-        cycles = getattr(context.scene, "cycles", None)
-        if cycles is not None:
-            column = layout.column(align=True)
-            column.prop(cycles, "pixel_filter_type", text="Pixel Filter")
-            if cycles.pixel_filter_type != "BOX":
-                column.prop(cycles, "filter_width", text="Width")
+    layout.prop(context.scene.render, "film_transparent", text="Transparent")
+    cycles = getattr(context.scene, "cycles", None)
+    if cycles is not None:
+        column = layout.column(align=True)
+        column.prop(cycles, "pixel_filter_type", text="Pixel Filter")
+        if cycles.pixel_filter_type != "BOX":
+            column.prop(cycles, "filter_width", text="Width")
 
 
-class SHLIGHT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
+@panel("SHLIGHT_RENDER_PT_performance", "Performance", closed=True)
+def performance(layout: Any, context: Any) -> None:
     """Threads, and what is kept from frame to frame."""
-
-    bl_label = "Performance"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        layout = with_names_aside(self.layout)
-        render = context.scene.render
-        column = layout.column()
-        column.prop(render, "threads_mode")
-        row = column.row()
-        row.active = render.threads_mode == "FIXED"
-        row.prop(render, "threads")
-        layout.prop(render, "use_persistent_data", text="Persistent Data")
+    render = context.scene.render
+    column = layout.column()
+    column.prop(render, "threads_mode")
+    row = column.row()
+    row.active = render.threads_mode == "FIXED"
+    row.prop(render, "threads")
+    layout.prop(render, "use_persistent_data", text="Persistent Data")
 
 
 CLASSES = (
     SHLIGHT_PT_presets,
     SHLIGHT_OT_add_preset,
-    SHLIGHT_RENDER_PT_sampling,
-    SHLIGHT_RENDER_PT_sampling_viewport,
-    SHLIGHT_RENDER_PT_light,
-    SHLIGHT_RENDER_PT_light_advanced,
-    SHLIGHT_RENDER_PT_shadows,
-    SHLIGHT_RENDER_PT_film,
-    SHLIGHT_RENDER_PT_performance,
+    sampling,
+    sampling_viewport,
+    light,
+    light_advanced,
+    shadows,
+    film,
+    performance,
 )
