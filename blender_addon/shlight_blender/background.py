@@ -106,14 +106,23 @@ def _reason(error: RuntimeError) -> str:
 
 
 @contextmanager
-def few_pixels(render: Any, longer_side: int = FEW_PIXELS) -> Iterator[None]:
-    """Meanwhile renders are of this many pixels on the longer side."""
-    size = render.resolution_x, render.resolution_y
-    render.resolution_x, render.resolution_y = (max(1, longer_side * side // max(size)) for side in size)
+def kept(owners: Iterable[Any], *names: str) -> Iterator[None]:
+    """In the end properties of owners have the values again that they have now."""
+    before = [(owner, name, getattr(owner, name)) for owner in owners for name in names]
     try:
         yield
     finally:
-        render.resolution_x, render.resolution_y = size
+        for owner, name, value in before:
+            setattr(owner, name, value)
+
+
+@contextmanager
+def few_pixels(render: Any, longer_side: int = FEW_PIXELS) -> Iterator[None]:
+    """Meanwhile renders are of this many pixels on the longer side."""
+    size = render.resolution_x, render.resolution_y
+    with kept([render], "resolution_x", "resolution_y"):
+        render.resolution_x, render.resolution_y = (max(1, longer_side * side // max(size)) for side in size)
+        yield
 
 
 def use_cycles(

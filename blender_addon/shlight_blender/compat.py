@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything in which the supported Blender versions differ: 3.4 on one side, 4.2 and later on the other.
 
-The differences are in tables (`LAMPS`, `PRINCIPLED`, `MATERIALS`) and in functions on meshes and results, which ask for
-the attribute they need instead of the version, so that no other module knows a version number.
+The differences are in constants and in functions on meshes and results, which ask for the attribute they need instead
+of the version, so that no other module knows a version number.
 """
 
 from __future__ import annotations
@@ -23,109 +23,45 @@ VERSION: tuple[int, int, int] = bpy.app.version
 IS_BLENDER_4 = VERSION >= (4, 0, 0)
 
 
-@dataclass(frozen=True)
-class LampConvention:
+class Lamps:
     """How Cycles turns a lamp's power S [W] into emitted radiance."""
 
-    area: float  # rectangle of area A: radiance = area * S / A
-    point_is_always_disk: bool  # a point lamp is the disk that faces the shading point, whatever its settings
-    spot_is_scaled: bool  # a scaled spot lamp has an elliptical cone
-    spot_times_cosine: bool  # a spot lamp's light falls with the cosine of the angle to its axis too
-    sun_is_tangent: bool  # a sun is even on the plane tangent to the sphere of directions, not on that sphere
-    area_has_uvs: bool  # textures of an area lamp find coordinates on it by default, as if it had a UV map
-    instancer_hides: bool  # a lamp is hidden from the rays that the object which shows its instance is hidden from
+    area = 1.0 / math.pi if IS_BLENDER_4 else 0.25  # rectangle of area A: radiance = area * S / A
+    point_is_always_disk = not IS_BLENDER_4  # a point lamp is the disk that faces the shading point, whatever is set
+    spot_is_scaled = IS_BLENDER_4  # a scaled spot lamp has an elliptical cone
+    spot_times_cosine = not IS_BLENDER_4  # a spot lamp's light falls with the cosine of the angle to its axis too
+    sun_is_tangent = not IS_BLENDER_4  # a sun is even on the plane tangent to the sphere of directions, not on that
+    area_has_uvs = IS_BLENDER_4  # textures of an area lamp find coordinates on it by default, as if it had a UV map
+    instancer_hides = VERSION >= (4, 5, 0)  # what hides the object that shows a lamp's instance hides the lamp
 
 
-LAMPS = (
-    LampConvention(
-        area=1.0 / math.pi,
-        point_is_always_disk=False,
-        spot_is_scaled=True,
-        spot_times_cosine=False,
-        sun_is_tangent=False,
-        area_has_uvs=True,
-        instancer_hides=VERSION >= (4, 5, 0),
-    )
-    if IS_BLENDER_4
-    else LampConvention(
-        area=0.25,
-        point_is_always_disk=True,
-        spot_is_scaled=False,
-        spot_times_cosine=True,
-        sun_is_tangent=True,
-        area_has_uvs=False,
-        instancer_hides=False,
-    )
-)
-
-
-@dataclass(frozen=True)
-class CameraConvention:
-    """The place of a camera's settings, and how Cycles reads them."""
-
-    panorama_is_cycles: bool  # the settings of panoramas are Cycles' own, or Blender's
-    lens_is_at_near_plane: bool  # an orthographic camera's lens lies in the near clip plane, or where the camera is
-
-
-CAMERAS = CameraConvention(panorama_is_cycles=not IS_BLENDER_4, lens_is_at_near_plane=not IS_BLENDER_4)
+# An orthographic camera's lens lies in the near clip plane, or where the camera is.
+LENS_IS_AT_NEAR_PLANE = not IS_BLENDER_4
 
 
 def panorama_settings(lens: Any) -> Any:
     """The owner of a camera's panorama settings. AttributeError if that is Cycles and its add-on is off."""
-    return lens.cycles if CAMERAS.panorama_is_cycles else lens
+    return lens if IS_BLENDER_4 else lens.cycles
 
 
-@dataclass(frozen=True)
-class PrincipledSockets:
-    """Sockets of the Principled BSDF by meaning; `unsupported` maps a socket to the value at which it does nothing."""
-
-    layered: bool  # specular layer over the diffuse base (4.x), or a plain sum of both (3.4)
-    specular: str
-    emission: str
-    unsupported: dict[str, float]
-
-
-PRINCIPLED = (
-    PrincipledSockets(
-        layered=True,
-        specular="Specular IOR Level",
-        emission="Emission Color",
-        unsupported={
-            "Anisotropic": 0.0,
-            "Sheen Weight": 0.0,
-            "Thin Film Thickness": 0.0,
-        },
-    )
+# The Principled BSDF has a specular layer over the diffuse base, or is a plain sum of both.
+PRINCIPLED_IS_LAYERED = IS_BLENDER_4
+# Its inputs that are not supported, with the values at which they do nothing.
+PRINCIPLED_UNSUPPORTED = (
+    {"Anisotropic": 0.0, "Sheen Weight": 0.0, "Thin Film Thickness": 0.0}
     if IS_BLENDER_4
-    else PrincipledSockets(
-        layered=False,
-        specular="Specular",
-        emission="Emission",
-        unsupported={
-            "Subsurface": 0.0,
-            "Anisotropic": 0.0,
-            "Clearcoat": 0.0,
-            "Sheen": 0.0,
-        },
-    )
+    else {"Subsurface": 0.0, "Anisotropic": 0.0, "Clearcoat": 0.0, "Sheen": 0.0}
 )
-
-
-@dataclass(frozen=True)
-class MaterialConvention:
-    """Cycles' surface of faces without material."""
-
-    default_is_principled: bool  # a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8
-    empty_slot_is_default: bool  # an object's own empty slot is without material, or has that of the object's data
-
-
-MATERIALS = MaterialConvention(default_is_principled=VERSION >= (5, 0, 0), empty_slot_is_default=VERSION >= (5, 2, 0))
+# Faces without material have a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8.
+DEFAULT_IS_PRINCIPLED = VERSION >= (5, 0, 0)
+# An object's own empty slot is without material, or has that of the object's data.
+EMPTY_SLOT_IS_DEFAULT = VERSION >= (5, 2, 0)
 
 
 def slot_materials(evaluated: Any) -> tuple[Any, ...]:
     """The materials that Cycles draws for the slots of an evaluated object; None: the default surface."""
     materials = [slot.material for slot in evaluated.material_slots]
-    if MATERIALS.empty_slot_is_default:
+    if EMPTY_SLOT_IS_DEFAULT:
         # The evaluated slots show the materials of the object's data there.
         for number, slot in enumerate(evaluated.original.material_slots[: len(materials)]):
             if slot.link == "OBJECT" and slot.material is None:
@@ -230,7 +166,7 @@ def lamp_casts_shadows(lamp: Any) -> bool:
 
 def point_is_disk(lamp: Any) -> bool:
     """True if a point lamp shades as the disk that faces the shading point, False for the sphere itself."""
-    return LAMPS.point_is_always_disk or bool(getattr(lamp, "use_soft_falloff", False))
+    return Lamps.point_is_always_disk or bool(getattr(lamp, "use_soft_falloff", False))
 
 
 @dataclass(frozen=True)

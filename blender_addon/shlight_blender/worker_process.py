@@ -3,12 +3,11 @@
 
 `WorkerProcess` starts it, reads its messages without waiting for it, and ends it for good: Blender renders in one, and
 whatever it prints, and even its crash, then ends in one clear line. `serve` is what runs in it. Its last two arguments
-are a folder, which holds request.json and takes what it makes, and a file descriptor for messages. A message is a line
-of JSON:
-    {"kind": "stage", "name": ..., "expected_seconds": ...}: what is done from now on
-    {"kind": "known", "figures": ...}: of the result, already
-    {"kind": "result", "figures": ...}: the rest of it, or
-    {"kind": "error", "text": ..., "exit_code": ...}: why there is none
+are a folder, which holds request.json and takes what it makes, and a file descriptor for messages. A message is a pair:
+    "stage" and the arguments of Stage: what is done from now on
+    "known" and figures by name: of the result, already
+    "result" and figures by name: the rest of it, or
+    "error" and the arguments of WorkerError: why there is none
 """
 
 from __future__ import annotations
@@ -17,7 +16,6 @@ import ctypes
 import importlib.util
 import json
 import os
-import select
 import signal
 import subprocess
 import sys
@@ -26,6 +24,8 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -43,21 +43,16 @@ class SceneError(RuntimeError):
 class Channel:
     """The way to the process that wants to know."""
 
-    def __init__(self, stream: Any) -> None:
-        self._stream = stream
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
 
     def stage(self, name: str, expected_seconds: float = 0.0) -> None:
         """Says what is done from now on; 0: nobody knows how long."""
-        self.send("stage", name=name, expected_seconds=expected_seconds)
+        self._connection.send(("stage", (name, expected_seconds)))
 
     def known(self, **figures: Any) -> None:
         """Says what of the result is known."""
-        self.send("known", figures=figures)
-
-    def send(self, kind: str, **message: Any) -> None:
-        """Sends any message."""
-        self._stream.write(json.dumps({"kind": kind, **message}) + "\n")
-        self._stream.flush()
+        self._connection.send(("known", figures))
 
 
 Work = Callable[[dict[str, Any], Path, Channel], dict[str, Any]]
@@ -70,15 +65,14 @@ def serve(work: Work, argv: list[str]) -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     folder = Path(argv[-2])
     request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
-    with os.fdopen(int(argv[-1]), "w", encoding="utf-8") as stream:
-        channel = Channel(stream)
+    with Connection(int(argv[-1]), readable=False) as connection:
         try:
-            channel.send("result", figures=work(request, folder, channel))
+            connection.send(("result", work(request, folder, Channel(connection))))
         except Exception as error:
             traceback.print_exc()
             # Blender's operators fail with RuntimeErrors, whose text says enough.
             kind = "" if isinstance(error, RuntimeError) else f"{type(error).__name__}: "
-            channel.send("error", text=kind + one_line(error), exit_code=getattr(error, "exit_code", 1))
+            connection.send(("error", (kind + one_line(error), getattr(error, "exit_code", 1))))
 
 
 LOG = "blender.log"
@@ -127,57 +121,45 @@ class WorkerProcess:
         """Starts it; `command` without the folder and the file descriptor for messages. OSError if it cannot."""
         (folder / "request.json").write_text(json.dumps(request), encoding="utf-8")
         self._log = folder / LOG
-        self._pending = b""
         self.known: dict[str, Any] = {}
         self.stage = Stage()
-        self._read_end, write_end = os.pipe()
-        try:
-            with self._log.open("wb") as log:
-                self._process = subprocess.Popen(
-                    [*command, str(folder), str(write_end)],
-                    stdin=subprocess.DEVNULL,
-                    stdout=log,
-                    stderr=subprocess.STDOUT,
-                    pass_fds=[write_end],
-                    # Blender reads no preferences of the user.
-                    env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
-                    start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
-                )
-        except OSError:
-            os.close(self._read_end)
-            raise
-        finally:
-            os.close(write_end)
+        self._messages, other_end = Pipe(duplex=False)
+        with other_end, self._log.open("wb") as log:
+            self._process = subprocess.Popen(
+                [*command, str(folder), str(other_end.fileno())],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                pass_fds=[other_end.fileno()],
+                # Blender reads no preferences of the user.
+                env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
+                start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
+            )
 
     def result(self, seconds: float = TICK_SECONDS) -> dict[str, Any] | None:
         """The figures once all are known; None after `seconds` at most, for which it waits. WorkerError if it failed.
 
         `known` has those that are known before, `stage` what is being done.
         """
-        for message in self._messages(seconds):
-            if message["kind"] == "error":
-                raise WorkerError(message["text"], message["exit_code"])
-            if message["kind"] == "stage":
-                self.stage = Stage(message["name"], message["expected_seconds"])
+        while self._messages.poll(seconds):
+            try:
+                kind, given = self._messages.recv()
+            except (EOFError, OSError):
+                raise WorkerError(last_words(self._process.wait(), self._log), 1) from None
+            if kind == "error":
+                raise WorkerError(*given)
+            if kind == "stage":
+                self.stage = Stage(*given)
                 continue
-            self.known |= message["figures"]
-            if message["kind"] == "result":
+            self.known |= given
+            if kind == "result":
                 return self.known
+            seconds = 0.0
         return None
-
-    def _messages(self, seconds: float) -> list[dict[str, Any]]:
-        """The messages that were not read."""
-        if not select.select([self._read_end], [], [], seconds)[0]:
-            return []
-        received = os.read(self._read_end, 65536)
-        if not received:
-            raise WorkerError(last_words(self._process.wait(), self._log), 1)
-        *lines, self._pending = (self._pending + received).split(b"\n")
-        return [json.loads(line) for line in lines]
 
     def end(self) -> None:
         """Ends it at once. After its result nothing is left to do but Blender's own end, which may crash."""
-        os.close(self._read_end)
+        self._messages.close()
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)  # with what it has started itself
         self._process.wait()

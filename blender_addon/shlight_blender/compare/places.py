@@ -10,10 +10,10 @@ from typing import Any
 import bpy
 from mathutils import Matrix, Vector
 
+from ..export.camera import matrix_of_camera
 from ..frame import frame_of
 from ..names import name_of
-from ..report import ExportReport
-from ..ui.report import PLACE
+from ..report import ExportReport, thing
 
 # Places of the report whose light may fall on everything.
 OF_LIGHT = ("Light '", "World '")
@@ -30,7 +30,7 @@ class Seen:
     def to_data(self, report: ExportReport) -> dict[str, Any]:
         """It, and messages of the report about it (`messages`) and about light from elsewhere (`of_light`)."""
         own = {self.place, *(f"Material '{name}'" for name in self.materials)}
-        about_it = [message for message in report if own & set(map(_thing, message.places))]
+        about_it = [message for message in report if own & set(map(thing, message.places))]
         of_light = [
             message
             for message in report
@@ -42,12 +42,6 @@ class Seen:
             "messages": [message.text for message in about_it],
             "of_light": [message.line() for message in of_light],
         }
-
-
-def _thing(place: str) -> str:
-    """A place without its node."""
-    found = PLACE.fullmatch(place)
-    return f"{found['kind']} '{found['name']}'" if found else place
 
 
 def show_what_is_rendered(view_layer: Any) -> None:
@@ -76,13 +70,7 @@ class Finder:
         self._depsgraph = bpy.context.evaluated_depsgraph_get()
         self._frame = frame_of(scene.render)
         camera = scene.camera.evaluated_get(self._depsgraph)
-        projection = camera.calc_matrix_camera(
-            self._depsgraph,
-            x=self._frame.full_width,
-            y=self._frame.full_height,
-            scale_x=scene.render.pixel_aspect_x,
-            scale_y=scene.render.pixel_aspect_y,
-        )
+        projection = matrix_of_camera(camera, self._depsgraph, self._frame, scene.render)
         location, rotation, _ = camera.matrix_world.decompose()
         # Objects at a pixel of a panorama are not looked up; the report may name the camera.
         self._panorama = Seen(f"Camera '{name_of(camera)}'") if camera.data.type == "PANO" else None

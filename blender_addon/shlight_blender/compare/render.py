@@ -28,6 +28,7 @@ from .. import register as register_addon
 from ..background import (
     Bounces,
     few_pixels,
+    kept,
     last_picture,
     leave_plain,
     load_unsaved_images,
@@ -219,14 +220,10 @@ def bounces_of(scene: Any) -> Bounces:
 def without_shadows() -> Iterator[None]:
     """Meanwhile surfaces that do not glow are seen by the camera alone, and no light that Cycles follows meets them."""
     surfaces = [seen for seen in bpy.data.objects if seen.type != "LIGHT" and not _glows(seen)]
-    before = [(seen, flag, getattr(seen, flag)) for seen in surfaces for flag in LIGHT_RAYS]
-    for seen, flag, _ in before:
-        setattr(seen, flag, False)
-    try:
+    with kept(surfaces, *LIGHT_RAYS):
+        for seen in surfaces:
+            seen.visible_diffuse = seen.visible_glossy = seen.visible_shadow = False
         yield
-    finally:
-        for seen, flag, value in before:
-            setattr(seen, flag, value)
 
 
 def _glows(seen: Any) -> bool:

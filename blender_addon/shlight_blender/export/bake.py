@@ -67,9 +67,8 @@ def bake_world(world: Any, scene: Any, waiting: Waiting | None = None) -> Baked 
     Raises BakeError if the other Blender cannot be started, fails, or takes longer than half an hour.
     """
     key = bake_key(world, scene)
-    if key is not None and key in kept:
-        kept.move_to_end(key)
-        return kept[key]
+    if (found := _found(key)) is not None:
+        return found
     baked = _bake(world, scene, waiting)
     # Edits during the bake may be in the picture and not in the key.
     if baked is not None and key is not None and bake_key(world, scene) == key:
@@ -84,10 +83,16 @@ def _keep(key: bytes, baked: Baked) -> None:
         kept.popitem(last=False)
 
 
+def _found(key: bytes | None) -> Baked | None:
+    if key is None or key not in kept:
+        return None
+    kept.move_to_end(key)
+    return kept[key]
+
+
 def kept_world(world: Any, scene: Any) -> Baked | None:
     """The world if it is kept."""
-    key = bake_key(world, scene)
-    return None if key is None else kept.get(key)
+    return _found(bake_key(world, scene))
 
 
 class _Background:
@@ -99,7 +104,7 @@ class _Background:
         self.error = ""
         self._stopped = False
         self._folder = tempfile.TemporaryDirectory(prefix="shlight_world_")
-        self._request = _write(Path(self._folder.name), world, scene)
+        self._request = _request(Path(self._folder.name), world, scene)
         self._thread = threading.Thread(target=self._run, name="shlight world", daemon=True)
         self._thread.start()
         atexit.register(self._end)  # else the other Blender would go on
@@ -138,9 +143,8 @@ def bake_in_background(world: Any, scene: Any, ended: Callable[[], None]) -> Bak
     key = bake_key(world, scene)
     if key is None:
         raise BakeError("it uses something whose changes cannot be told; final renders bake it each time")
-    if key in kept:
-        kept.move_to_end(key)
-        return kept[key]
+    if (found := _found(key)) is not None:
+        return found
     if _background is None or _background.key != key:
         if _background is not None:
             _background.stop()
@@ -153,59 +157,41 @@ def bake_in_background(world: Any, scene: Any, ended: Callable[[], None]) -> Bak
 
 def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
     with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
-        return _baked(_write(Path(name), world, scene), Path(name), waiting)
+        return _baked(_request(Path(name), world, scene), Path(name), waiting)
 
 
-def _write(folder: Path, world: Any, scene: Any) -> dict[str, Any]:
-    """Writes the files that the other Blender needs; returns the request."""
+def _request(folder: Path, world: Any, scene: Any) -> dict[str, Any]:
+    """The request to the other Blender, whose files are written to `folder`."""
     try:
         bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
-        return _request(world, scene, folder)
+        images = {node.image.original for node in all_nodes(world.node_tree) if getattr(node, "image", None)}
+        return {
+            "world": world.original.name,
+            "frame": scene.frame_current,
+            "subframe": scene.frame_subframe,
+            "width": scene.shlight.world_width,
+            "threads": scene.render.threads if scene.render.threads_mode == "FIXED" else 0,
+            "images": save_unsaved_images(images, folder),
+        }
     except UnicodeDecodeError as error:
         raise BakeError("its name, or that of an image in it, is not UTF-8; rename it") from error
     except (OSError, RuntimeError, ValueError) as error:
         raise BakeError(one_line(error)) from error
 
 
-def _request(world: Any, scene: Any, folder: Path) -> dict[str, Any]:
-    render = scene.render
-    return {
-        "world": world.original.name,
-        "frame": scene.frame_current,
-        "subframe": scene.frame_subframe,
-        "width": scene.shlight.world_width,
-        "threads": render.threads if render.threads_mode == "FIXED" else 0,
-        "images": save_unsaved_images(_images(world), folder),
-    }
-
-
-def _images(world: Any) -> set[Any]:
-    return {node.image.original for node in all_nodes(world.node_tree) if getattr(node, "image", None)}
-
-
 def _baked(request: dict[str, Any], folder: Path, waiting: Waiting | None) -> Baked | None:
     """The other Blender's answer to the request; None if `waiting` stopped it."""
+    end = time.monotonic() + LONGEST_SECONDS
     try:
         worker = WorkerProcess(command(WORKER), request, folder, environment())
         try:
-            suns = _suns(worker, waiting)
+            while (figures := worker.result(TICK_SECONDS)) is None:
+                if waiting is not None and not waiting("Baking the world"):
+                    return None
+                if time.monotonic() > end:
+                    raise BakeError(f"it takes longer than {LONGEST_SECONDS:.0f} s")
         finally:
             worker.end()
-        if suns is None:
-            return None
-        picture = np.load(folder / "picture.npy", allow_pickle=False)
+        return Baked(np.load(folder / "picture.npy", allow_pickle=False), figures["suns"])
     except (WorkerError, OSError, ValueError) as error:
         raise BakeError(one_line(error)) from error
-    return Baked(picture, [Sun(np.array(s["direction"]), s["angle"], np.array(s["irradiance"])) for s in suns])
-
-
-def _suns(worker: WorkerProcess, waiting: Waiting | None) -> list[dict[str, Any]] | None:
-    """The suns once the picture is there, too; None if `waiting` stopped it."""
-    end = time.monotonic() + LONGEST_SECONDS
-    while waiting is None or waiting("Baking the world"):
-        if figures := worker.result(TICK_SECONDS):
-            suns: list[dict[str, Any]] = figures["suns"]
-            return suns
-        if time.monotonic() > end:
-            raise BakeError(f"it takes longer than {LONGEST_SECONDS:.0f} s")
-    return None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import CAMERAS, panorama_settings
+from ..compat import LENS_IS_AT_NEAR_PLANE, panorama_settings
 from ..frame import Frame
 from ..names import name_of
 from ..report import ExportError, ExportReport
@@ -33,7 +33,7 @@ def aperture_of(lens: Any, to_world: Matrix, depsgraph: Any) -> dict[str, float]
     length = 1.0 if lens.type == "ORTHO" else MILLIMETRE * lens.lens
     size = 0.5 * length / max(dof.aperture_fstop, LEAST_F_STOP)
     focus_distance = max(_focus_distance(dof, to_world, depsgraph), LEAST_FOCUS_DISTANCE)
-    if lens.type == "ORTHO" and CAMERAS.lens_is_at_near_plane:
+    if lens.type == "ORTHO" and LENS_IS_AT_NEAR_PLANE:
         # The lens in the camera's own plane through which the same rays go.
         size *= (focus_distance + lens.clip_start) / focus_distance
         focus_distance += lens.clip_start
@@ -161,19 +161,15 @@ def set_projection(
     to_world, projection: 4 x 4, without scale, and to normalized device coordinates. aperture: as of `aperture_of`;
     None: everything is in focus.
     """
-    left, right, bottom, top = _window(projection, frame, orthographic=orthographic)
+    window = _window(projection, frame, orthographic=orthographic)
+    near, far = clips
     scene.set_camera_window(
-        to_world,
-        left,
-        right,
-        bottom,
-        top,
-        orthographic=orthographic,
-        clip_start=clips[0],
-        clip_end=clips[1],
-        **(aperture or {}),
+        to_world, *window, orthographic=orthographic, clip_start=near, clip_end=far, **(aperture or {})
     )
-    return _view(to_world, projection, orthographic=orthographic)
+    rows = np.linalg.inv(to_world)[:3] * np.array([[1.0], [1.0], [-1.0]])
+    offset = projection[:2, 3] if orthographic else -projection[:2, 2]
+    slope = float(projection[0, 0]), float(projection[1, 1])
+    return View(_plain(rows), slope, (float(offset[0]), float(offset[1])), orthographic)
 
 
 def set_panorama(
@@ -191,22 +187,17 @@ def set_panorama(
     """
     if panorama is None:
         raise ExportError("the camera's type of panorama is not supported; choose another Panorama Type")
-    left, right, bottom, top = window
-    scene.set_panorama_camera(
-        to_world,
-        left=left,
-        right=right,
-        bottom=bottom,
-        top=top,
-        clip_start=clips[0],
-        clip_end=clips[1],
-        **panorama,
-        **aperture,
-    )
+    sides: dict[str, Any] = dict(zip(("left", "right", "bottom", "top"), window, strict=True))
+    scene.set_panorama_camera(to_world, clip_start=clips[0], clip_end=clips[1], **sides, **panorama, **aperture)
     right, up, back = np.linalg.inv(to_world)[:3]
     rows = (right, back, up) if panorama["panorama_type"] == "mirrorball" else (-back, -right, up)
-    to_camera = tuple(tuple(row) for row in np.array(rows).tolist())
-    return View(to_camera, (0.0, 0.0), (0.0, 0.0), orthographic=False, panoramic=True)
+    return View(_plain(rows), (0.0, 0.0), (0.0, 0.0), orthographic=False, panoramic=True)
+
+
+def matrix_of_camera(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> Any:
+    """The projection matrix of an evaluated camera to normalized device coordinates of the whole picture."""
+    size = {"x": frame.full_width, "y": frame.full_height}
+    return camera.calc_matrix_camera(depsgraph, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y, **size)
 
 
 def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any) -> Matrix:
@@ -214,27 +205,14 @@ def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any
     shift_x = lens.shift_x
     lens.shift_x = eye.shift_x  # of the evaluated copy
     try:
-        matrix = camera.calc_matrix_camera(
-            depsgraph,
-            x=frame.full_width,
-            y=frame.full_height,
-            scale_x=render.pixel_aspect_x,
-            scale_y=render.pixel_aspect_y,
-        )
+        matrix = matrix_of_camera(camera, depsgraph, frame, render)
     finally:
         lens.shift_x = shift_x
     return np.array(matrix, dtype=np.float64)
 
 
-def _view(to_world: Matrix, projection: Matrix, *, orthographic: bool) -> View:
-    to_camera = np.linalg.inv(to_world)[:3] * np.array([[1.0], [1.0], [-1.0]])
-    offset = projection[:2, 3] if orthographic else -projection[:2, 2]
-    return View(
-        tuple(tuple(row) for row in to_camera.tolist()),
-        (float(projection[0, 0]), float(projection[1, 1])),
-        (float(offset[0]), float(offset[1])),
-        orthographic,
-    )
+def _plain(rows: Any) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in np.array(rows).tolist())
 
 
 def _window(projection: Matrix, frame: Frame, *, orthographic: bool) -> tuple[float, float, float, float]:
@@ -247,9 +225,7 @@ def _window(projection: Matrix, frame: Frame, *, orthographic: bool) -> tuple[fl
         normalized = 2.0 * pixel / size - 1.0
         return float((normalized + sign * projection[axis, column]) / projection[axis, axis])
 
-    return (
-        window(0, frame.left, frame.full_width),
-        window(0, frame.right, frame.full_width),
-        window(1, frame.bottom, frame.full_height),
-        window(1, frame.top, frame.full_height),
-    )
+    width, height = frame.full_width, frame.full_height
+    left, right = (window(0, pixel, width) for pixel in (frame.left, frame.right))
+    bottom, top = (window(1, pixel, height) for pixel in (frame.bottom, frame.top))
+    return left, right, bottom, top

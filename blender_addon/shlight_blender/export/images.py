@@ -102,23 +102,16 @@ class TextureCache:
         limit = self._export - KEPT_EXPORTS
         self._textures = {key: entry for key, entry in list(self._textures.items()) if entry[1] >= limit}
 
-    def clear(self) -> None:
-        """Drops everything."""
-        self._textures.clear()
-        self._broken.clear()
-
     def get(self, key: tuple[Any, ...], make: Callable[[], Texture | None]) -> Texture | None:
         """The texture of this key; `make()` makes it, or None."""
-        if key not in self._textures:
-            made = make()
-            if made is None:
-                return None
-            self._textures[key] = (made, self._export)
-        texture = self._textures[key][0]
-        self._textures[key] = (texture, self._export)
+        texture = self._textures[key][0] if key in self._textures else make()
+        if texture is not None:
+            self._textures[key] = (texture, self._export)
         return texture
 
-    def _read(self, path: str, make: Callable[[], _core.TexturePixels]) -> Future[_core.TexturePixels]:
+    def from_file(self, key: tuple[Any, ...], path: str, make: Callable[[], _core.TexturePixels]) -> Texture | None:
+        """The texture of this key, which `make()` makes of a file while others are read; magenta if that fails."""
+
         def made() -> _core.TexturePixels:
             try:
                 texture = make()
@@ -128,12 +121,8 @@ class TextureCache:
             self._broken.discard(path)
             return texture
 
-        return self._readers.submit(made)
-
-    def from_file(self, key: tuple[Any, ...], path: str, make: Callable[[], _core.TexturePixels]) -> Texture | None:
-        """The texture of this key, which `make()` makes of a file while others are read; magenta if that fails."""
         self._asked.add(path)
-        return self.get(key, lambda: self._read(path, make))
+        return self.get(key, lambda: self._readers.submit(made))
 
     @property
     def unreadable(self) -> list[str]:
@@ -150,14 +139,10 @@ class TextureCache:
 TEXTURES = TextureCache()
 
 
-def is_data(image: Any) -> bool:
-    """True if its numbers are no colours."""
-    return image.colorspace_settings.name in ("Non-Color", "Raw")
-
-
 def associates_alpha(image: Any) -> bool:
     """True if Cycles multiplies its colours with alpha."""
-    return not is_data(image) and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
+    is_data = image.colorspace_settings.name in ("Non-Color", "Raw")
+    return not is_data and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
 
 def space_of(image: Any) -> str:
@@ -180,14 +165,6 @@ def _texture(pixels: NDArray[Any], space: str, use: TextureUse) -> _core.Texture
     return texture_pixels(pixels, encoding, use.interpolation, use.extension)
 
 
-class FileSettings(NamedTuple):
-    """The settings of an image that affect the pixels of its files."""
-
-    space: str
-    associate: bool
-    alpha_mode: str
-
-
 def datablock_texture(image: Any, use: TextureUse) -> Texture | None:
     """The texture of an image with one picture; None if it has no pixels."""
     width, height = image.size
@@ -206,14 +183,19 @@ def datablock_texture(image: Any, use: TextureUse) -> Texture | None:
 def file_texture(image: Any, path: str, use: TextureUse) -> Texture | None:
     """The texture of a file that belongs to an image, being read; None if it is missing or of an unknown format, or if
     there is no OpenImageIO."""
+    path = bpy.path.abspath(path, library=image.library)
     try:
         stamp = Path(path).stat().st_mtime_ns
         images.check_texture(path)
     except (ImportError, OSError, ValueError):
         return None
-    settings = FileSettings(space_of(image), associates_alpha(image), image.alpha_mode)
-    key = (path, stamp, settings, use)
-    return TEXTURES.from_file(key, path, lambda: _read_file(path, settings, use))
+    space, associate, mode = settings = space_of(image), associates_alpha(image), image.alpha_mode
+
+    def read() -> _core.TexturePixels:
+        pixels = images.read_texture(path, associate=False)
+        return _texture(_with_alpha(pixels, associate=associate, mode=mode), space, use)
+
+    return TEXTURES.from_file((path, stamp, settings, use), path, read)
 
 
 def has_plain_file(image: Any) -> bool:
@@ -237,12 +219,6 @@ def _pixels(image: Any) -> NDArray[Any]:
     if not image.is_float:
         pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
     return _with_alpha(pixels, associate=associates_alpha(image) and not image.is_float, mode=image.alpha_mode)
-
-
-def _read_file(path: str, settings: FileSettings, use: TextureUse) -> _core.TexturePixels:
-    pixels = images.read_texture(path, associate=False)
-    pixels = _with_alpha(pixels, associate=settings.associate, mode=settings.alpha_mode)
-    return _texture(pixels, settings.space, use)
 
 
 def _with_alpha(pixels: NDArray[Any], *, associate: bool, mode: str) -> NDArray[Any]:
@@ -275,10 +251,9 @@ def linear_pixels(image: Any) -> NDArray[np.float32] | None:
 
     Blender keeps floats as linear light, whatever their file has; bytes are in the image's colour space.
     """
-    width, height = image.size
-    if width < 1 or height < 1:
-        return None
     pixels = pixels_of(image)
+    if not pixels.size:
+        return None
     channels = pixels.shape[2]
     rgb = pixels[..., :3] if channels >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
     rgb = np.nan_to_num(rgb, posinf=BRIGHTEST, neginf=-BRIGHTEST)

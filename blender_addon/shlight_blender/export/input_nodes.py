@@ -16,7 +16,7 @@ from shlight.nodes.values import clamp, cross, dot, length, maximum, normalize, 
 
 from ..names import name_of
 from .camera import View
-from .mesh_attributes import COLOR, GENERATED, TANGENT
+from .mesh_attributes import COLOR, GENERATED, POINTINESS, RANDOM_PER_ISLAND, TANGENT
 from .nodes import Expression, NodeInputs, ReadNode
 from .object_values import RANDOM, property_color
 
@@ -43,23 +43,25 @@ def _in_window(view: View) -> Vector:
     return Vector(0.5 + 0.5 * (x * slope_x + offset_x), 0.5 + 0.5 * (y * slope_y + offset_y), 0.0)
 
 
+COORDINATES: dict[str, Callable[[], Vector]] = {
+    "UV": lambda: nodes.uv(""),
+    "Generated": lambda: nodes.attribute(GENERATED),
+    "Normal": lambda: normalize(normal_to_object(nodes.normal())),
+    "Reflection": lambda: reflect(-nodes.towards_viewer(), nodes.normal()),
+}
+
+
 def _texture_coordinate(inputs: NodeInputs) -> Expression:
     name, view = inputs.output.identifier, inputs.reader.surroundings.view
     if inputs.node.from_instancer and name in ("Generated", "UV"):
         inputs.remark("'From Instancer' is not supported; the object's own coordinates are used")
-    if name == "UV":
-        return nodes.uv("")
-    if name == "Generated":
-        return nodes.attribute(GENERATED)
-    if name == "Normal":
-        return normalize(normal_to_object(nodes.normal()))
+    if name in COORDINATES:
+        return COORDINATES[name]()
     if name == "Object":
         other = inputs.node.object
         if other is None:
             return point_to_object(nodes.position())
         return _rows(np.linalg.pinv(np.array(other.matrix_world, dtype=np.float64))[:3], nodes.position())
-    if name == "Reflection":
-        return reflect(-nodes.towards_viewer(), nodes.normal())
     if view is None or (name == "Window" and view.panoramic):
         inputs.remark(f"'{name}' coordinates are not supported here; (0, 0, 0) is used")
         return Vector(0.0, 0.0, 0.0)
@@ -67,17 +69,12 @@ def _texture_coordinate(inputs: NodeInputs) -> Expression:
 
 
 def _camera_data(inputs: NodeInputs) -> Expression:
-    view = inputs.reader.surroundings.view
+    view, name = inputs.reader.surroundings.view, inputs.output.identifier
     if view is None:
         inputs.remark("the camera is not known here; 0 is used")
-        return nodes.values.number(0.0)
+        return number(0.0)
     place = _in_camera(view)
-    outputs: dict[str, Expression] = {
-        "View Vector": normalize(place),
-        "View Z Depth": place.z,
-        "View Distance": length(place),
-    }
-    return outputs[inputs.output.identifier]
+    return normalize(place) if name == "View Vector" else place.z if name == "View Z Depth" else length(place)
 
 
 Move = Callable[[Vector], Vector]
@@ -186,23 +183,22 @@ def _color_attribute(inputs: NodeInputs) -> Expression:
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
-def _geometry(inputs: NodeInputs) -> Expression:
-    name = inputs.output.identifier
-    if name == "Position":
-        return nodes.position()
-    if name == "Normal":
-        return nodes.normal()
-    if name == "True Normal":
-        return nodes.geometric_normal()
-    if name == "Incoming":
-        return nodes.towards_viewer()
-    if name == "Backfacing":
-        return nodes.backfacing()
-    if name == "Parametric":
-        return Vector(1.0 - nodes.barycentric().x - nodes.barycentric().y, nodes.barycentric().x, 0.0)
-    if name == "Tangent":
-        return around("Z")
-    return nodes.attribute(f"\0{name.lower()}:").x
+def _parametric() -> Vector:
+    x, y = nodes.barycentric().x, nodes.barycentric().y
+    return Vector(1.0 - x - y, x, 0.0)
+
+
+GEOMETRY: dict[str, Callable[[], Expression]] = {
+    "Position": nodes.position,
+    "Normal": nodes.normal,
+    "True Normal": nodes.geometric_normal,
+    "Incoming": nodes.towards_viewer,
+    "Backfacing": nodes.backfacing,
+    "Parametric": _parametric,
+    "Tangent": lambda: around("Z"),
+    "Pointiness": lambda: nodes.attribute(POINTINESS).x,
+    "Random Per Island": lambda: nodes.attribute(RANDOM_PER_ISLAND).x,
+}
 
 
 def _object_info(inputs: NodeInputs) -> Expression:
@@ -248,17 +244,12 @@ def _layer_weight(inputs: NodeInputs) -> Value:
     return 1.0 - operation("power", abs(cosine), exponent)
 
 
-def _light_path(inputs: NodeInputs) -> Value:
-    name = inputs.output.identifier
-    if name == "Is Camera Ray":
-        return nodes.rays.camera_ray()
-    if name == "Is Shadow Ray":
-        return nodes.rays.shadow_ray()
-    if name == "Ray Length":
-        return nodes.inputs.ray_length()
-    if name == "Transparent Depth":
-        return nodes.inputs.transparent_depth()
-    return number(0.0)
+LIGHT_PATH: dict[str, Callable[[], Value]] = {
+    "Is Camera Ray": nodes.rays.camera_ray,
+    "Is Shadow Ray": nodes.rays.shadow_ray,
+    "Ray Length": nodes.inputs.ray_length,
+    "Transparent Depth": nodes.inputs.transparent_depth,
+}
 
 
 def _light_falloff(inputs: NodeInputs) -> Value:
@@ -294,12 +285,12 @@ INPUT_NODES: dict[str, ReadNode] = {
     "UVMAP": _uv_map,
     "ATTRIBUTE": _attribute,
     "VERTEX_COLOR": _color_attribute,
-    "NEW_GEOMETRY": _geometry,
+    "NEW_GEOMETRY": lambda inputs: GEOMETRY[inputs.output.identifier](),
     "OBJECT_INFO": _object_info,
     "FRESNEL": _fresnel,
     "LAYER_WEIGHT": _layer_weight,
     "LIGHT_FALLOFF": _light_falloff,
-    "LIGHT_PATH": _light_path,
+    "LIGHT_PATH": lambda inputs: LIGHT_PATH.get(inputs.output.identifier, lambda: number(0.0))(),
     "NORMAL_MAP": _normal_map,
     "BUMP": _bump,
 }

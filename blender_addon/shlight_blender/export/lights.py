@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
+from ..compat import Lamps, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .materials import with_light
-from .nodes import RGB, Surroundings, rgb
-from .shaders import SHADERS, ShaderReader
+from .nodes import RGB, Surroundings, TreeReader, rgb
+from .shaders import NODES
 from .textured_lamps import UNIT_SQUARE, EvenLamp, EvenPart, even_lamp
 
 # The widest sun of Blender 3.4 [rad]: beyond, the plane that it is even on is nearly parallel to its light.
@@ -80,7 +80,7 @@ def add_lamp(
         return False
     if not power.any():
         return False
-    shown_by = [lamp_object] if instancer is None or not LAMPS.instancer_hides else [lamp_object, instancer]
+    shown_by = [lamp_object] if instancer is None or not Lamps.instancer_hides else [lamp_object, instancer]
     traits: Traits = {
         "shadows": lamp_casts_shadows(lamp),
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
@@ -99,7 +99,7 @@ def _glow_of_nodes(lamp: Any, place: str, report: ExportReport, surroundings: Su
     output = lamp.node_tree.get_output_node("CYCLES")
     if output is None:
         return EvenLamp(np.zeros(3), [])
-    reader = ShaderReader(lamp, place, report, surroundings, SHADERS)
+    reader = TreeReader(lamp, place, report, surroundings, NODES)
     surface = with_light(reader.shader(output.inputs["Surface"]), place, report)
     if surface.varying is None:
         return EvenLamp(np.atleast_2d(surface.emission)[0], [])
@@ -139,7 +139,7 @@ def spot_direction(to_world: NDArray[np.float64]) -> NDArray[np.float64] | None:
     # Without volume its directions have no place in the lamp's frame.
     if not lengths.all() or not abs(np.linalg.det(axes / lengths)) > 1e-9:
         return None
-    return axes if LAMPS.spot_is_scaled else -axes[:, 2]
+    return axes if Lamps.spot_is_scaled else -axes[:, 2]
 
 
 def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
@@ -155,7 +155,7 @@ def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
         rgb(_intensity(lamp)),
         radius=float(lamp.data.shadow_soft_size),
         facing_disk=point_is_disk(lamp.data),
-        times_cosine=LAMPS.spot_times_cosine,
+        times_cosine=Lamps.spot_times_cosine,
         **lamp.traits,
     )
     return True
@@ -167,7 +167,7 @@ def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
         report.add(lamp.place, "its scale is 0; left out", Effect.LIGHT)
         return False
     angle = float(lamp.data.angle)
-    if LAMPS.sun_is_tangent and angle > WIDEST_TANGENT_SUN:
+    if Lamps.sun_is_tangent and angle > WIDEST_TANGENT_SUN:
         report.add(
             lamp.place,
             f"a sun wider than {math.degrees(WIDEST_TANGENT_SUN):.0f}° is drawn as wide as that",
@@ -177,7 +177,7 @@ def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     irradiance = lamp.power
     if not lamp_is_normalized(lamp.data) and angle > 0.0:
         irradiance = irradiance * (math.pi * math.sin(0.5 * angle) ** 2)
-    scene.add_sun_light(direction, angle, rgb(irradiance), tangent=LAMPS.sun_is_tangent, **lamp.traits)
+    scene.add_sun_light(direction, angle, rgb(irradiance), tangent=Lamps.sun_is_tangent, **lamp.traits)
     return True
 
 
@@ -222,7 +222,7 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     sheared = abs(float(axis_x @ axis_y)) > 1e-3 * float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y))
     if sheared:
         report.add(lamp.place, "sheared area lamps are drawn as parallelograms; Cycles takes them for rectangles")
-    factor = LAMPS.area / area if lamp_is_normalized(data) else 1.0 / math.pi
+    factor = Lamps.area / area if lamp_is_normalized(data) else 1.0 / math.pi
     if is_round and not lamp.parts:
         u, v = half_axes[::-1] if _turns_right(lamp.to_world) else half_axes
         scene.add_disk_light(lamp.place_in_world(), u, v, rgb(factor * lamp.power), spread=spread, **lamp.traits)

@@ -17,22 +17,22 @@ from shlight.nodes import Shader
 from shlight.nodes.rays import Ray, color_on_ray
 from shlight.nodes.shader import BLACK
 
-from ..compat import MATERIALS, aov_name, lets_light_through, uses_nodes
+from ..compat import DEFAULT_IS_PRINCIPLED, aov_name, lets_light_through, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .emission import VaryingEmission, of_both_sides
-from .nodes import RGB, Surroundings, origin
-from .shaders import SHADERS, ShaderInputs, ShaderReader
+from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin
+from .shaders import NODES
 
 
-def with_aovs(shader: Shader, reader: ShaderReader, tree: Any) -> Shader:
+def with_aovs(shader: Shader, reader: TreeReader, tree: Any) -> Shader:
     """A shader with what the nodes of its tree give to the AOVs that are asked for."""
     wanted = reader.surroundings.passes.aovs
     aovs = {}
     for node, groups in _outputs(tree):
         kind = wanted.get(aov_name(node))
         if kind is not None:
-            inputs = ShaderInputs(reader, node, None, groups)
+            inputs = NodeInputs(reader, node, None, groups)
             aovs[aov_name(node)] = inputs.number("Value") if kind == "VALUE" else inputs.color("Color")
     return shader.with_aovs(aovs) if aovs else shader
 
@@ -91,7 +91,7 @@ class Surface:
 
 def default_surface() -> Surface:
     """The surface of an object without material."""
-    if MATERIALS.default_is_principled:
+    if DEFAULT_IS_PRINCIPLED:
         return Surface(nodes.principled(DEFAULT_ALBEDO, several_bounces=True))
     return Surface(nodes.lambert(DEFAULT_ALBEDO))
 
@@ -149,7 +149,7 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
         socket = output.inputs.get(name)
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
-    reader = ShaderReader(material, place, report, surroundings, SHADERS)
+    reader = TreeReader(material, place, report, surroundings, NODES)
     shader = with_aovs(reader.shader(output.inputs["Surface"]), reader, material.node_tree)
     if not lets_light_through(material):
         graph = surroundings.depsgraph

@@ -94,20 +94,14 @@ COLOR = "\0color:"
 GENERATED = "\0generated:"
 
 # Numbers that the mesh's shape gives.
-SHAPES: dict[str, Callable[[Any], NDArray[np.float64]]] = {
-    "\0pointiness:": pointiness,
-    "\0random per island:": random_per_island,
-}
+POINTINESS, RANDOM_PER_ISLAND = "\0pointiness:", "\0random per island:"
+SHAPES: dict[str, Callable[[Any], Array]] = {POINTINESS: pointiness, RANDOM_PER_ISLAND: random_per_island}
 
-COMPONENTS = {
-    "FLOAT": 1,
-    "INT": 1,
-    "INT8": 1,
-    "BOOLEAN": 1,
-    "FLOAT2": 2,
-    "FLOAT_VECTOR": 3,
-    "FLOAT_COLOR": 4,
-    "BYTE_COLOR": 4,
+# Names of values and numbers of components by types of attributes.
+TYPES = {
+    **dict.fromkeys(("FLOAT", "INT", "INT8", "BOOLEAN"), ("value", 1)),
+    **{"FLOAT2": ("vector", 2), "FLOAT_VECTOR": ("vector", 3)},
+    **dict.fromkeys(("FLOAT_COLOR", "BYTE_COLOR"), ("color", 4)),
 }
 
 
@@ -116,48 +110,41 @@ def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> di
 
     UV is the UV map for rendering; the prefixes above name what is made of a mesh.
     """
-    found = {}
-    for name in names:
-        values = _attribute(mesh, triangles, name)
-        if values is not None:
-            found[name] = np.ascontiguousarray(values, dtype=np.float32)
-    return found
+    found = {name: _attribute(mesh, triangles, name) for name in names}
+    return {
+        name: np.ascontiguousarray(values, dtype=np.float32) for name, values in found.items() if values is not None
+    }
 
 
 def _attribute(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
     if name.startswith(TANGENT):
-        return _tangents(mesh, triangles, name.removeprefix(TANGENT))
+        return _tangents(mesh, triangles, _uv_layer(mesh, name.removeprefix(TANGENT)))
     if name.startswith(COLOR):
-        return _color(mesh, triangles, name.removeprefix(COLOR))
+        return _layer(triangles, _color_layer(mesh.color_attributes, name.removeprefix(COLOR)))
     if name == GENERATED:
         return _generated(mesh, triangles)
     if name in SHAPES:
         return SHAPES[name](mesh).astype(np.float32)[triangles.corner_vertices][..., None]
-    uvs = _uvs(mesh, triangles, name)
+    uvs = _uv_layer(mesh, name)
     if uvs is not None:
-        return uvs
-    layer = with_name(mesh.attributes, name) if name else None
-    return None if layer is None else _layer(triangles, layer)
+        return np.nan_to_num(uv_coordinates(uvs), posinf=0.0, neginf=0.0)[triangles.corners]
+    return _layer(triangles, with_name(mesh.attributes, name) if name else None)
 
 
 def _uv_layer(mesh: Any, name: str) -> Any:
-    return (
-        with_name(mesh.uv_layers, name) if name else next((map_ for map_ in mesh.uv_layers if map_.active_render), None)
-    )
+    layers = mesh.uv_layers
+    return with_name(layers, name) if name else next((layer for layer in layers if layer.active_render), None)
 
 
-def _uvs(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
-    layer = _uv_layer(mesh, name)
-    if layer is None:
-        return None
-    return np.nan_to_num(uv_coordinates(layer), posinf=0.0, neginf=0.0)[triangles.corners]
+def _color_layer(layers: Any, name: str) -> Any:
+    index = layers.render_color_index
+    return with_name(layers, name) if name else layers[index] if 0 <= index < len(layers) else None
 
 
-def _tangents(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
-    layer = _uv_layer(mesh, name)
-    if layer is None:
-        return None
+def _tangents(mesh: Any, triangles: Triangles, layer: Any) -> FloatArray | None:
     try:
+        if layer is None:
+            return None
         mesh.calc_tangents(uvmap=layer.name)
     except (RuntimeError, UnicodeDecodeError):  # faces of more than four corners, or an odd name; they have none
         return None
@@ -167,27 +154,16 @@ def _tangents(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
     return np.concatenate([tangents, signs[:, None]], axis=1)[triangles.corners]
 
 
-def _color(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
-    layers = mesh.color_attributes
-    index = layers.render_color_index
-    layer = with_name(layers, name) if name else layers[index] if 0 <= index < len(layers) else None
-    return None if layer is None else _layer(triangles, layer)
-
-
 def _layer(triangles: Triangles, layer: Any) -> FloatArray | None:
     """Any attribute; colours of bytes are linear light here, as Blender gives them."""
-    count = COMPONENTS.get(layer.data_type)
-    if count is None:
+    if layer is None or layer.data_type not in TYPES:
         return None
-    field = {"FLOAT2": "vector", "FLOAT_VECTOR": "vector"}.get(layer.data_type, "color" if count == 4 else "value")
+    field, count = TYPES[layer.data_type]
     values = np.nan_to_num(values_of(layer.data, field, np.float32, count)).reshape(-1, count)
-    if layer.domain == "CORNER":
-        return values[triangles.corners]
-    if layer.domain == "POINT":
-        return values[triangles.corner_vertices]
     if layer.domain == "FACE":
         return np.repeat(values[triangles.polygons][:, None], 3, axis=1)
-    return None
+    places = {"CORNER": triangles.corners, "POINT": triangles.corner_vertices}.get(layer.domain)
+    return None if places is None else values[places]
 
 
 def _generated(mesh: Any, triangles: Triangles) -> FloatArray:

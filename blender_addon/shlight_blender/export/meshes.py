@@ -49,14 +49,6 @@ def _label(shown: Any) -> Label:
 
 
 @dataclass
-class KeptSurface:
-    """A material as it was read."""
-
-    surface: Surface
-    report: ExportReport
-
-
-@dataclass
 class KeptMesh:
     """A mesh in the scene, with a surface for each material slot (at least one), and all places where it stands."""
 
@@ -91,7 +83,7 @@ class SceneMeshes:
     def __init__(self, scene: shlight.Scene) -> None:
         self._scene = scene
         self._kept: dict[tuple[Any, ...], KeptMesh] = {}
-        self._surfaces: dict[Any, KeptSurface] = {}
+        self._surfaces: dict[Any, tuple[Surface, ExportReport]] = {}  # by materials
         self._override: Any = None
         self._doubled: set[str] = set()
         self.report = ExportReport()
@@ -110,23 +102,19 @@ class SceneMeshes:
     def add(self, instance: Any, to_world: Matrix) -> None:
         """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
         mesh_object = instance.object
-        place = f"Object '{name_of(mesh_object)}'"
         if not np.isfinite(to_world).all():
-            self.report.add(place, "its transform is not finite; left out", Effect.THING)
+            self.report.add(_place_of(mesh_object), "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
-        group = self._surroundings.passes.light_part(SURFACES, name_of(mesh_object, "lightgroup"))
-        offsets = terminator_offsets(mesh_object)
         own = (material and material.as_pointer() for material in materials)
-        key = (mesh_object.data.as_pointer(), group, offsets, *own)
+        key = (mesh_object.data.as_pointer(), self._group(mesh_object), terminator_offsets(mesh_object), *own)
         flat = _is_flat(to_world)
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
         if key not in self._seen:
-            self._seen[key] = self._kept_mesh(key, instance, to_world, surfaces) or self._convert(
-                instance, to_world, place, surfaces, group, flat, offsets
-            )
+            kept = self._kept_mesh(key, instance, to_world, surfaces)
+            self._seen[key] = kept or self._convert(instance, to_world, surfaces, flat)
         use = self._seen[key]
         use.transforms.append(np.eye(4) if flat else to_world)
         use.object_values.append(self._surroundings.object_values.of(instance))
@@ -158,23 +146,16 @@ class SceneMeshes:
         needs_uvs = self._surroundings.passes.uvs or any(surface.follows_uvs for surface in surfaces)
         return _attribute_names(surfaces) | ({UV} if needs_uvs else set())
 
-    def _convert(
-        self,
-        instance: Any,
-        to_world: Matrix,
-        place: str,
-        surfaces: list[Surface],
-        group: str | None,
-        flat: bool,
-        offsets: tuple[float, float],
-    ) -> KeptMesh:
-        """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world;
-        offsets: see terminator_offsets."""
-        report = ExportReport()
+    def _group(self, mesh_object: Any) -> str | None:
+        return self._surroundings.passes.light_part(SURFACES, name_of(mesh_object, "lightgroup"))
+
+    def _convert(self, instance: Any, to_world: Matrix, surfaces: list[Surface], flat: bool) -> KeptMesh:
+        """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
+        shown, place, report = instance.object, _place_of(instance.object), ExportReport()
         attributes = self._attributes(surfaces)
-        arrays = object_arrays(instance.object, place, sorted(attributes), report)
+        arrays = object_arrays(shown, place, sorted(attributes), report)
         if arrays is not None:
-            complete(arrays, instance.object, sorted(_attribute_names(surfaces)), report)
+            complete(arrays, shown, sorted(_attribute_names(surfaces)), report)
         if arrays is not None and flat:
             arrays = flattened(arrays, to_world)
         is_cut = arrays is not None and _is_cut(surfaces)
@@ -185,9 +166,10 @@ class SceneMeshes:
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
         centers = np.empty((0, 3)) if arrays is None else _centers(arrays)
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, is_cut, group, report, centers)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, is_cut, self._group(shown), report, centers)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
+            geometry_offset, shading_offset = terminator_offsets(shown)
             made.faces = np.bincount(slots, minlength=len(surfaces))
             made.mesh = self._scene.add_mesh(
                 arrays.vertices,
@@ -198,8 +180,8 @@ class SceneMeshes:
                 material_indices=slots,
                 transforms=np.empty((0, 4, 4)),
                 turn_normals=False,
-                terminator_geometry_offset=offsets[0],
-                terminator_shading_offset=offsets[1],
+                terminator_geometry_offset=geometry_offset,
+                terminator_shading_offset=shading_offset,
                 **_materials(made),
             )
         return made
@@ -209,24 +191,23 @@ class SceneMeshes:
         key = material and material.as_pointer()
         if key not in self._surfaces:
             report = ExportReport()
-            surface = read_material(material, report, self._surroundings)
-            self._surfaces[key] = KeptSurface(surface, report)
+            self._surfaces[key] = read_material(material, report, self._surroundings), report
+        surface, report = self._surfaces[key]
         if key not in self._told:
             self._told.add(key)
-            self.report.extend(self._surfaces[key].report)
-        return self._surfaces[key].surface
+            self.report.extend(report)
+        return surface
 
     def operations(self) -> dict[str, int]:
         """How many operations a hit takes, by the name of each material whose values vary."""
-        surfaces = [own.surface for own in self._surfaces.values()]
-        return {own.name: own.operation_count for own in surfaces if own.operation_count > 0}
+        return {own.name: own.operation_count for own, _ in self._surfaces.values() if own.operation_count > 0}
 
     def names(self) -> dict[str, set[str]]:
         """The names of all drawn objects, materials and assets."""
         labels = [label for use in self._kept.values() for label in use.labels]
         return {
             "object": {label.name for label in labels},
-            "material": {own.surface.name for own in self._surfaces.values()},
+            "material": {own.name for own, _ in self._surfaces.values()},
             "asset": {label.asset for label in labels},
         }
 
@@ -263,6 +244,11 @@ class SceneMeshes:
                 names.append(f"Object '{label.name}'")
                 centers.append(use.centers @ to_world[:3, :3].T + to_world[:3, 3])
         return {name for name, is_doubled in zip(names, doubled(centers), strict=True) if is_doubled}
+
+
+def _place_of(shown: Any) -> str:
+    """An object as the report names it."""
+    return f"Object '{name_of(shown)}'"
 
 
 def _centers(arrays: MeshArrays) -> NDArray[np.float64]:

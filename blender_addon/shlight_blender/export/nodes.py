@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading node trees: following links, and values as expressions of `shlight.nodes`.
+"""Reading node trees: following links, and what they make as values and shaders of `shlight.nodes`.
 
 Constant values are computed here, varying ones at each hit. A table says what each type of node makes of its inputs. A
-node of another type is reported, and the constant that its socket holds is used in its place.
+node of another type is reported. In the place of its value the constant that its socket holds is used, and in that of
+its shader a Diffuse BSDF.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shlight.nodes import Color, Value, Vector
+from shlight import nodes
+from shlight.nodes import Color, Shader, Value, Vector
 from shlight.nodes.values import Varying, color, number, vector
 
 from ..names import name_of
@@ -130,9 +132,9 @@ class Surroundings:
 
 @dataclass(frozen=True)
 class NodeInputs:
-    """A node whose output is asked for, as the functions of `NODES` see it."""
+    """A node whose output is asked for, as the functions of `shaders.NODES` see it."""
 
-    reader: ExpressionReader
+    reader: TreeReader
     node: Any
     output: Any
     groups: tuple[Any, ...]
@@ -176,31 +178,43 @@ class NodeInputs:
         """An input as a colour."""
         return color(self.expression(name))
 
+    def shader(self, name: str | int) -> Shader:
+        """The shader that an input receives."""
+        return self.reader.shader(self.node.inputs[name], self.groups)
+
     def remark(self, text: str, effect: Effect = Effect.LOOK) -> None:
         """Adds a line about this node to the report."""
-        self.reader.report.add(self.reader.at(self.node), text, effect)
+        self.reader.report.add(f"{self.reader.place}, node '{node_name(self.node)}'", text, effect)
+
+    def remark_hidden_behind(self, what: str) -> None:
+        """Reports glass in a picture of direct light."""
+        if not self.reader.surroundings.light_bounces:
+            self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
+
+    def ignore_unless(self, name: str, neutral: float) -> None:
+        """Reports an input that is not supported, unless it has the value at which it does nothing."""
+        if name in self.node.inputs and self.number(name).constant != neutral:
+            self.remark(f"'{name}' is not supported; {neutral:g} is used")
 
 
-ReadNode = Callable[[NodeInputs], Varying]
+ReadNode = Callable[[NodeInputs], "Varying | Shader"]
 
 
 # Nodes that are read inside each other, at most.
 DEEPEST = 50
 
 
-@dataclass(frozen=True)
-class Asked:
-    """Something of a tree that is to be found, and kept in `known` by `key`."""
+class Asked(NamedTuple):
+    """The value or the shader of a node's output, which an input socket reads."""
 
-    known: dict[Any, Any]
-    key: Any
-    read: Callable[[], Any]
-    in_circle: Callable[[], Any]
+    source: Origin
+    socket: Any
+    is_shader: bool
 
     @property
-    def mark(self) -> tuple[int, Any]:
-        """Its name among all that is asked for."""
-        return id(self.known), self.key
+    def key(self) -> tuple[Any, ...]:
+        """The same for the same output in the same groups."""
+        return self.is_shader, *self.source.key
 
 
 class TooDeepError(Exception):
@@ -211,91 +225,96 @@ class TooDeepError(Exception):
         self.asked = asked
 
 
-class ExpressionReader:
+@dataclass
+class TreeReader:
     """Follows the links of the tree of `owner`; `place` names it in the report, for instance "Material 'Wood'"."""
 
-    def __init__(
-        self,
-        owner: Any,
-        place: str,
-        report: ExportReport,
-        surroundings: Surroundings,
-        read_nodes: Mapping[str, ReadNode],
-    ) -> None:
-        self._nodes = read_nodes
-        self.owner = owner
-        self.surroundings = surroundings
-        self.place = place
-        self.report = report
-        self._known: dict[tuple[Any, ...], Expression] = {}
-        self._open: set[tuple[Any, ...]] = set()
-
-    def at(self, node: Any) -> str:
-        """The place of one node in the report."""
-        return f"{self.place}, node '{node_name(node)}'"
+    owner: Any
+    place: str
+    report: ExportReport
+    surroundings: Surroundings
+    nodes: Mapping[str, ReadNode]  # by types of nodes
+    _known: dict[tuple[Any, ...], Any] = field(default_factory=dict, init=False)
+    _open: set[tuple[Any, ...]] = field(default_factory=set, init=False)
 
     def expression(self, socket: Any, groups: tuple[Any, ...] = ()) -> Expression:
         """The value that an input socket receives."""
         source = origin(socket, groups)
-        return own_value(source.socket) if source.node is None else self.output(source, socket)
+        return own_value(source.socket) if source.node is None else self._find(Asked(source, socket, False))
 
-    def output(self, source: Origin, socket: Any = None) -> Expression:
-        """The value of a node's output; socket: the input that reads it."""
+    def shader(self, socket: Any, groups: tuple[Any, ...] = ()) -> Shader:
+        """The shader that a socket receives; black where nothing is linked."""
+        source = origin(socket, groups)
+        return Shader() if source.node is None else self._find(Asked(source, socket, True))
 
-        def in_circle() -> Expression:
-            self.report.add(self.at(source.node), "its links run in a circle; 0 is used")
-            return number(0.0)
-
-        asking = source.socket if socket is None else socket
-        return self.once(self._known, source, lambda: self._read(source, asking), in_circle)
-
-    def once(self, known: dict[Any, Any], source: Origin, read: Callable[[], Any], in_circle: Callable[[], Any]) -> Any:
-        """`known` of a source; `read()` finds it, perhaps by asking for others, and `in_circle()` if it is one of them.
-
-        What lies too deep is read first, from the bottom up, so that trees of any depth fit Python's stack.
-        """
-        asked = Asked(known, source.key, read, in_circle)
-        if asked.key in known:
-            return known[asked.key]
-        if asked.mark in self._open:
-            return in_circle()
-        if len(self._open) >= DEEPEST:
-            raise TooDeepError(asked)
+    def _find(self, asked: Asked) -> Any:
+        """What is asked for. What lies too deep is read first, from the bottom up, so that any tree fits the stack."""
         if self._open:
-            self._find(asked)
-            return known[asked.key]
+            return self._find_here(asked)
         waiting = [asked]
         while waiting:
             try:
-                self._find(waiting[-1])
+                self._find_here(waiting[-1])
                 waiting.pop()
             except TooDeepError as deep:
-                deeper = deep.asked
-                if any(own.mark == deeper.mark for own in waiting):
-                    deeper.known[deeper.key] = deeper.in_circle()
+                if deep.asked.key in {own.key for own in waiting}:
+                    self._known[deep.asked.key] = self._in_circle(deep.asked)
                 else:
-                    waiting.append(deeper)
-        return known[asked.key]
+                    waiting.append(deep.asked)
+        return self._known[asked.key]
 
-    def _find(self, asked: Asked) -> None:
-        self._open.add(asked.mark)
+    def _find_here(self, asked: Asked) -> Any:
+        if asked.key in self._known:
+            return self._known[asked.key]
+        if asked.key in self._open:
+            return self._in_circle(asked)
+        if len(self._open) >= DEEPEST:
+            raise TooDeepError(asked)
+        self._open.add(asked.key)
         try:
-            asked.known[asked.key] = asked.read()
+            self._known[asked.key] = self._read_shader(asked) if asked.is_shader else self._read_value(asked)
         finally:
-            self._open.discard(asked.mark)
+            self._open.discard(asked.key)
+        return self._known[asked.key]
 
-    def _read(self, source: Origin, socket: Any) -> Expression:
-        read = self._nodes.get(source.node.type)
-        if read is not None:
-            found = read(NodeInputs(self, source.node, source.output, source.groups))
+    def _inputs(self, source: Origin) -> NodeInputs:
+        return NodeInputs(self, source.node, source.output, source.groups)
+
+    def _in_circle(self, asked: Asked) -> Expression | Shader:
+        if asked.is_shader:
+            return Shader()  # Cycles draws none of them either
+        self._inputs(asked.source).remark("its links run in a circle; 0 is used")
+        return number(0.0)
+
+    def _read_value(self, asked: Asked) -> Expression:
+        source, socket, _ = asked
+        inputs, read = self._inputs(source), self.nodes.get(source.node.type)
+        if read is not None and not isinstance(found := read(inputs), Shader):
             return found if isinstance(found, Value | Vector) else _constant(found)
         fallback = own_value(source.socket)
-        kind = source.node.bl_label or source.node.bl_idname
         constants = [value.constant for value in (fallback if isinstance(fallback, Vector) else (fallback,))]
         shown = np.array2string(np.array(constants), precision=3, separator=", ")
-        text = f"{kind} is not supported; '{socket.name}' of '{node_name(socket.node)}' uses its constant {shown}"
-        self.report.add(self.at(source.node), text)
+        reads = f"'{socket.name}' of '{node_name(socket.node)}'"
+        inputs.remark(f"{_kind(source.node)} is not supported; {reads} uses its constant {shown}")
         return fallback
+
+    def _read_shader(self, asked: Asked) -> Shader:
+        source = asked.source
+        inputs, read = self._inputs(source), self.nodes.get(source.node.type)
+        if source.output.type != "SHADER":
+            # A value where a shader is asked for is light of that colour.
+            return nodes.emission(color(self._find(asked._replace(is_shader=False))))
+        if read is not None and isinstance(found := read(inputs), Shader):
+            return found
+        if "Color" not in source.node.inputs:
+            inputs.remark(f"{_kind(source.node)} is not supported; drawn black", Effect.THING)
+            return Shader()
+        inputs.remark(f"{_kind(source.node)} is not supported; drawn as Diffuse BSDF of its colour")
+        return nodes.lambert(inputs.color("Color"))
+
+
+def _kind(node: Any) -> str:
+    return str(node.bl_label or node.bl_idname)
 
 
 def _constant(value: Any) -> Expression:

@@ -1,109 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shader nodes: the walk over those of a tree, and what each type is in terms of `shlight.nodes`."""
+"""Shader nodes: what each type is in terms of `shlight.nodes`; and the table of all nodes."""
 
 from __future__ import annotations
-
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
 
 from shlight import nodes
 from shlight.nodes import Shader
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
-from ..compat import PRINCIPLED
-from ..report import Effect, ExportReport
+from ..compat import PRINCIPLED_IS_LAYERED, PRINCIPLED_UNSUPPORTED
+from ..report import Effect
 from .input_nodes import INPUT_NODES, fresnel_of
-from .nodes import ExpressionReader, NodeInputs, Origin, ReadNode, Surroundings, origin, own_value
+from .nodes import NodeInputs, ReadNode, own_value
 from .texture_nodes import TEXTURE_NODES
 from .value_nodes import VALUE_NODES
-
-NODES: dict[str, ReadNode] = {
-    "VALUE": lambda inputs: own_value(inputs.output),
-    "RGB": lambda inputs: own_value(inputs.output),
-    **TEXTURE_NODES,
-    **INPUT_NODES,
-    **VALUE_NODES,
-}
-
-
-@dataclass(frozen=True)
-class ShaderInputs(NodeInputs):
-    """A shader node, as the functions of `SHADERS` see it."""
-
-    reader: ShaderReader
-
-    def shader(self, name: str | int) -> Shader:
-        """The shader that an input receives."""
-        return self.reader.shader(self.node.inputs[name], self.groups)
-
-    def remark_hidden_behind(self, what: str) -> None:
-        """Reports glass in a picture of direct light."""
-        if not self.reader.surroundings.light_bounces:
-            self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
-
-    def ignore_unless(self, name: str, neutral: float) -> None:
-        """Reports an input that is not supported, unless it has the value at which it does nothing."""
-        if name in self.node.inputs and self.number(name).constant != neutral:
-            self.remark(f"'{name}' is not supported; {neutral:g} is used")
-
-
-class ShaderReader(ExpressionReader):
-    """Reads a tree's shaders; `shaders` and `values` say how a node of each type is read."""
-
-    def __init__(
-        self,
-        owner: Any,
-        place: str,
-        report: ExportReport,
-        surroundings: Surroundings,
-        shaders: dict[str, ReadShader],
-        values: Mapping[str, ReadNode] = NODES,
-    ) -> None:
-        super().__init__(owner, place, report, surroundings, values)
-        self._shaders = shaders
-        self._made: dict[tuple[Any, ...], Shader] = {}
-
-    def shader(self, socket: Any, groups: tuple[Any, ...] = ()) -> Shader:
-        """The shader that a socket receives; black where nothing is linked."""
-        source = origin(socket, groups)
-        if source.node is None:
-            return Shader()
-        made: Shader = self.once(self._made, source, lambda: self._read_shader(source), Shader)
-        return made
-
-    def _read_shader(self, source: Origin) -> Shader:
-        inputs = ShaderInputs(self, source.node, source.output, source.groups)
-        read = self._shaders.get(source.node.type)
-        if read is not None:
-            return read(inputs)
-        kind = source.node.bl_label or source.node.bl_idname
-        if "Color" not in source.node.inputs:
-            if source.output.type != "SHADER":
-                # A value where a shader is asked for is light of that colour.
-                return nodes.emission(nodes.values.color(self.output(source)))
-            inputs.remark(f"{kind} is not supported; drawn black", Effect.THING)
-            return Shader()
-        inputs.remark(f"{kind} is not supported; drawn as Diffuse BSDF of its colour")
-        return nodes.lambert(inputs.color("Color"))
-
-
-ReadShader = Callable[[ShaderInputs], Shader]
-
 
 # Luminance with which Blender 3.4 takes the brightness out of the base colour for Specular Tint.
 TINT_LUMINANCE = (0.3, 0.6, 0.1)
 
 
-def read_principled(inputs: ShaderInputs) -> Shader:
+def read_principled(inputs: NodeInputs) -> Shader:
     """Shader of a Principled BSDF node."""
-    for name, neutral in PRINCIPLED.unsupported.items():
+    for name, neutral in PRINCIPLED_UNSUPPORTED.items():
         inputs.ignore_unless(name, neutral)
-    return _read_layered(inputs) if PRINCIPLED.layered else _read_sum(inputs)
+    return _read_layered(inputs) if PRINCIPLED_IS_LAYERED else _read_sum(inputs)
 
 
-def _read_layered(inputs: ShaderInputs) -> Shader:
+def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_hidden_behind("'Transmission Weight'")
     if inputs.number("Subsurface Weight").constant != 0.0:
@@ -130,7 +53,7 @@ def _read_layered(inputs: ShaderInputs) -> Shader:
     )
 
 
-def _read_sum(inputs: ShaderInputs) -> Shader:
+def _read_sum(inputs: NodeInputs) -> Shader:
     if inputs.node.distribution == "MULTI_GGX":
         text = "distribution MULTI_GGX is not supported in this version of Blender; GGX is used"
         inputs.remark(text, Effect.SLIGHT)
@@ -164,7 +87,7 @@ def _read_sum(inputs: ShaderInputs) -> Shader:
     return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha
 
 
-def _glass_of_sum(inputs: ShaderInputs, base: Color, *, hue: Color, roughness: Value) -> Shader:
+def _glass_of_sum(inputs: NodeInputs, base: Color, *, hue: Color, roughness: Value) -> Shader:
     """The part of Blender 3.4's node that light goes through: its front reflects as Fresnel's law has it at the normal.
 
     base, hue: the colours of what goes through, and of what is reflected at a right angle.
@@ -185,13 +108,13 @@ def positive(c: nodes.Vector) -> Color:
     return Color(*(maximum(component, 0.0) for component in c))
 
 
-def _diffuse(inputs: ShaderInputs) -> Shader:
+def _diffuse(inputs: NodeInputs) -> Shader:
     return nodes.oren_nayar(
         positive(inputs.color("Color")), inputs.number("Roughness"), at=inputs.linked_vector("Normal")
     )
 
 
-def _roughness(inputs: ShaderInputs) -> Value:
+def _roughness(inputs: NodeInputs) -> Value:
     """The roughness of a node with a distribution of microfacets."""
     distribution = inputs.node.distribution
     roughness = number(0.0) if distribution == "SHARP" else inputs.number("Roughness")
@@ -201,14 +124,14 @@ def _roughness(inputs: ShaderInputs) -> Value:
     return roughness
 
 
-def _glossy(inputs: ShaderInputs) -> Shader:
+def _glossy(inputs: NodeInputs) -> Shader:
     inputs.ignore_unless("Anisotropy", 0.0)
     several = inputs.node.distribution == "MULTI_GGX"
     at = inputs.linked_vector("Normal")
     return nodes.glossy(inputs.color("Color"), _roughness(inputs), several_bounces=several, at=at)
 
 
-def _glass(inputs: ShaderInputs) -> Shader:
+def _glass(inputs: NodeInputs) -> Shader:
     inputs.remark_hidden_behind(inputs.node.bl_label)
     tint, ior, at = inputs.color("Color"), inputs.number("IOR"), inputs.linked_vector("Normal")
     roughness = _roughness(inputs)
@@ -217,19 +140,12 @@ def _glass(inputs: ShaderInputs) -> Shader:
     return nodes.glass(tint, roughness, ior, several_bounces=inputs.node.distribution == "MULTI_GGX", at=at)
 
 
-def _translucent(inputs: ShaderInputs) -> Shader:
-    return nodes.translucent(positive(inputs.color("Color")), inputs.linked_vector("Normal"))
-
-
-def _emission(inputs: ShaderInputs) -> Shader:
+def emission(inputs: NodeInputs) -> Shader:
+    """Shader of an Emission node, or of a world's Background."""
     return nodes.emission(inputs.color("Color") * inputs.number("Strength"))
 
 
-def _transparent(inputs: ShaderInputs) -> Shader:
-    return nodes.transparent(inputs.color("Color"))
-
-
-def _mix(inputs: ShaderInputs) -> Shader:
+def _mix(inputs: NodeInputs) -> Shader:
     factor = inputs.number(0)
     # The two shader inputs share their name; a branch of weight 0 does not show and is not even looked at.
     if factor.constant is not None and factor.constant <= 0.0:
@@ -239,19 +155,23 @@ def _mix(inputs: ShaderInputs) -> Shader:
     return nodes.mix(inputs.shader(1), inputs.shader(2), factor)
 
 
-def _add(inputs: ShaderInputs) -> Shader:
-    return inputs.shader(0) + inputs.shader(1)
-
-
-SHADERS: dict[str, ReadShader] = {
+SHADERS: dict[str, ReadNode] = {
     "BSDF_DIFFUSE": _diffuse,
     "BSDF_GLASS": _glass,
     "BSDF_GLOSSY": _glossy,
     "BSDF_PRINCIPLED": read_principled,
     "BSDF_REFRACTION": _glass,
-    "BSDF_TRANSLUCENT": _translucent,
-    "BSDF_TRANSPARENT": _transparent,
-    "EMISSION": _emission,
+    "BSDF_TRANSLUCENT": lambda i: nodes.translucent(positive(i.color("Color")), i.linked_vector("Normal")),
+    "BSDF_TRANSPARENT": lambda inputs: nodes.transparent(inputs.color("Color")),
+    "EMISSION": emission,
     "MIX_SHADER": _mix,
-    "ADD_SHADER": _add,
+    "ADD_SHADER": lambda inputs: inputs.shader(0) + inputs.shader(1),
+}
+NODES: dict[str, ReadNode] = {
+    "VALUE": lambda inputs: own_value(inputs.output),
+    "RGB": lambda inputs: own_value(inputs.output),
+    **TEXTURE_NODES,
+    **INPUT_NODES,
+    **VALUE_NODES,
+    **SHADERS,
 }

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compat import LAMPS
+from ..compat import Lamps
 from .emission import Input, VaryingEmission, divided, share_of
 from .nodes import RGB
 
@@ -216,7 +216,7 @@ def _inputs_at(places: Array) -> dict[Input, Array]:
     x, y = places.T
     # The lamp counts as a triangle whose corners 0 and 1 lie along its x and y.
     inputs: dict[Input, Array] = {("barycentric", 0, 0): y, ("barycentric", 0, 1): 1.0 - x - y}
-    if LAMPS.area_has_uvs:
+    if Lamps.area_has_uvs:
         inputs |= {("attribute", "", i): places[:, i] for i in range(2)}
     return inputs
 

@@ -15,7 +15,6 @@ from mathutils import Euler
 from numpy.typing import NDArray
 
 import shlight
-from shlight import nodes
 from shlight.nodes import Shader, Value
 from shlight.nodes.rays import Ray, color_on_ray
 from shlight.nodes.values import Varying, number, vector
@@ -28,32 +27,29 @@ from .bake import Baked, BakeError, Sun
 from .emission import Input, VaryingEmission
 from .images import BRIGHTEST, linear_pixels
 from .mesh_attributes import GENERATED
-from .nodes import ExpressionReader, NodeInputs, Origin, Surroundings, all_nodes, node_name, origin
-from .shaders import NODES, SHADERS, ShaderInputs, ShaderReader
+from .nodes import NodeInputs, Origin, ReadNode, Surroundings, TreeReader, all_nodes, node_name, origin
+from .shaders import NODES, SHADERS, emission
 
 TEXELS_AT_ONCE = 2**16
 # Outputs of a Light Path node for a diffuse ray, which sees the world as it lights a surface; others are 0.
 DIFFUSE_RAY = {"Is Diffuse Ray": 1.0, "Is Reflection Ray": 1.0, "Ray Depth": 1.0, "Diffuse Depth": 1.0}
 
 
-def _background(inputs: ShaderInputs) -> Shader:
-    return nodes.emission(inputs.color("Color") * inputs.number("Strength"))
-
-
 def _light_path(inputs: NodeInputs) -> Value:
     return number(DIFFUSE_RAY.get(inputs.output.identifier, 0.0))
 
 
-def _geometry(inputs: NodeInputs) -> Varying:
+def _geometry(inputs: NodeInputs) -> Varying | Shader:
     if inputs.output.identifier == "Tangent":
         inputs.remark("'Tangent' is not supported in a world; 0 is used", Effect.LIGHT)
         return number(0.0)
     return NODES["NEW_GEOMETRY"](inputs)
 
 
-WORLD_SHADERS = {name: SHADERS[name] for name in ("ADD_SHADER", "EMISSION", "MIX_SHADER")} | {"BACKGROUND": _background}
-# Attributes are those of the scene, which these expressions do not have.
-WORLD_VALUES = {name: read for name, read in NODES.items() if name != "ATTRIBUTE"} | {
+# Shaders of surfaces give no light in a world, and its attributes are those of the scene, which no program has.
+LEFT_OUT = {"ATTRIBUTE", *SHADERS} - {"ADD_SHADER", "EMISSION", "MIX_SHADER"}
+WORLD_NODES: dict[str, ReadNode] = {name: read for name, read in NODES.items() if name not in LEFT_OUT} | {
+    "BACKGROUND": emission,
     "LIGHT_PATH": _light_path,
     "NEW_GEOMETRY": _geometry,
 }
@@ -65,7 +61,7 @@ def radiance_of(surface: Any, world: Any, place: str, width: int, report: Export
 
     `report` receives what of its nodes is not supported.
     """
-    reader = ShaderReader(world, place, report, Surroundings(), WORLD_SHADERS, WORLD_VALUES)
+    reader = TreeReader(world, place, report, Surroundings(), WORLD_NODES)
     light = VaryingEmission(color_on_ray(reader.shader(surface).emission, Ray.LIGHT))
     if light.inputs:
         light.values({}, 1)  # which makes its program, before threads ask for it
@@ -183,7 +179,7 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake
     source = origin(output.inputs["Surface"])
     if source.node is None:
         return _black()
-    picture = _plain_picture(source, ShaderReader(world, place, ExportReport(), Surroundings(), {}))
+    picture = _plain_picture(source, TreeReader(world, place, ExportReport(), Surroundings(), NODES))
     if picture is not None:
         return picture
     _report_rays(world, place, report)
@@ -203,7 +199,7 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake
     return World(baked.picture, suns=baked.suns)
 
 
-def _plain_picture(source: Origin, reader: ExpressionReader) -> World | None:
+def _plain_picture(source: Origin, reader: TreeReader) -> World | None:
     """A world that is an Environment Texture, times a strength and turned, with the texels of its image; else None."""
     if source.node.type != "BACKGROUND":
         return None
@@ -219,7 +215,7 @@ def _plain_picture(source: Origin, reader: ExpressionReader) -> World | None:
     return None if pixels is None else World((strength * pixels).astype(pixels.dtype), turn)
 
 
-def _rotation(reader: ExpressionReader, source: Origin) -> NDArray[np.float64] | None:
+def _rotation(reader: TreeReader, source: Origin) -> NDArray[np.float64] | None:
     """Rotation of the picture whose directions come from `source`: Mapping nodes, or the world's own directions."""
     node = source.node
     if node is None or (node.type == "TEX_COORD" and source.output.name == "Generated"):

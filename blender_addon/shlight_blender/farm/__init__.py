@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from shlight.commands import CommandError, interrupts_blocked
+from shlight.commands import CommandError
+from shlight.farm.one_process import CallsAside
 
 from ..worker_process import check_blender
 from .source import SceneFile, describe
@@ -27,32 +27,25 @@ def open_scene_file(
         pass
     if not 0.0 < scale <= 100.0:
         raise ValueError(f"scale must be above 0 and at most 100, got {scale}")
-    spawning = multiprocessing.get_context("spawn")
-    receiver, sender = spawning.Pipe(duplex=False)
-    process = spawning.Process(target=_describe, args=(sender, path, views, settings, scale, sent), daemon=True)
-    with interrupts_blocked():
-        process.start()
-    sender.close()
+    aside = CallsAside(_described)
     try:
-        found: SceneFile | Exception = receiver.recv()
+        found: SceneFile | Exception = aside.call(path, views, settings, scale, sent)
     except EOFError:
         raise CommandError(f"{path}: Blender crashed when it opened it", 1) from None
     finally:
-        process.kill()  # nothing is left to do but Blender's own end, which may hang
-        process.join()
-        receiver.close()
+        aside.close()
     if isinstance(found, Exception):
         raise found
     return found
 
 
-def _describe(sender: Any, path: Path, *arguments: Any) -> None:
+def _described(path: Path, *arguments: Any) -> SceneFile | Exception:
     """In a process of its own, whose standard output is none of the command's."""
     with Path(os.devnull).open("wb") as nothing:
         os.dup2(nothing.fileno(), 1)
     try:
-        sender.send(describe(path, *arguments))
+        return describe(path, *arguments)
     except (ValueError, OSError) as error:
-        sender.send(error)
+        return error
     except Exception as error:  # SceneError among them, whose module needs bpy
-        sender.send(ValueError(f"{path}: {error}"))
+        return ValueError(f"{path}: {error}")

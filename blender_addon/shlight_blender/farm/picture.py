@@ -16,7 +16,7 @@ from shlight.farm import Rendered
 from shlight.quiet import quiet
 
 from .. import record
-from ..background import leave_plain, open_scene
+from ..background import kept, leave_plain, open_scene
 from ..compat import choose_layers, compositing_nodes
 from ..frame import Frame, frame_of
 from ..names import name_of, one_line
@@ -146,65 +146,48 @@ def views_of(scene: Any, wanted: tuple[str, ...]) -> tuple[tuple[str, str], ...]
 Box = tuple[int, int, int, int]
 
 KEPT_ATTRIBUTES = "cryptomatte/"
+# Settings that a picture changes, and that the next must find as they were.
+CHANGED = ("use_multiview", "use_border", "border_min_x", "border_max_x", "border_min_y", "border_max_y", "filepath")
 
 
 def render_picture(scene: Any, frame: int, view: str, box: Box | None, messages: tuple[str, ...]) -> Rendered:
     """The channels that Blender would write; a file without passes has RGBA."""
     scene.frame_set(frame)
     render = scene.render
-    own = _Kept(render)
-    with tempfile.TemporaryDirectory(prefix="shlight-") as folder:
+    with (
+        tempfile.TemporaryDirectory(prefix="shlight-") as folder,
+        kept([render], *CHANGED),
+        kept(render.views, "use", "file_suffix"),
+    ):
         try:
-            own.change(scene, view, box, Path(folder))
+            _set_up(scene, view, box, Path(folder))
             with quiet():
                 bpy.ops.render.render(write_still=True)
         except RuntimeError as error:  # how Blender's operators fail
             raise RuntimeError(record.last.scene_error or one_line(error)) from None
-        finally:
-            own.restore()
         (path,) = Path(folder).iterdir()
         channels, pixels, attributes = _read(path)
     return Rendered(channels, pixels, attributes, (*messages, *record.last.report.lines()))
 
 
-class _Kept:
-    """Render settings that a picture changes, and that the next must find as they were."""
-
-    NAMES = (
-        "use_multiview", "use_border", "border_min_x", "border_max_x", "border_min_y", "border_max_y", "filepath",
-        "use_file_extension",
-    )  # fmt: skip
-
-    def __init__(self, render: Any) -> None:
-        self._render = render
-        self._values = {name: getattr(render, name) for name in self.NAMES}
-        self._views = [(view, view.use, view.file_suffix) for view in render.views]
-
-    def change(self, scene: Any, view: str, box: Box | None, folder: Path) -> None:
-        """One view, one tile, and one file in a folder."""
-        render = self._render
-        multiview = render.use_multiview
-        leave_plain(render)
-        render.use_multiview = multiview
-        _choose_format(scene)
-        if multiview:
-            render.image_settings.views_format = "INDIVIDUAL"
-            for number, (other, _, _) in enumerate(self._views):
-                other.use = other.name == view
-                other.file_suffix = f"_{number}"  # what the file gives may lead out of the folder
-        elif view:
-            scene.camera = scene.objects[view]
-        if box is not None:
-            _set_border(render, frame_of(render), box)
-        render.use_file_extension = True
-        render.filepath = str(folder / "picture")
-
-    def restore(self) -> None:
-        """Restores the settings."""
-        for name, value in self._values.items():
-            setattr(self._render, name, value)
-        for view, use, suffix in self._views:
-            view.use, view.file_suffix = use, suffix
+def _set_up(scene: Any, view: str, box: Box | None, folder: Path) -> None:
+    """One view, one tile, and one file in a folder."""
+    render = scene.render
+    multiview = render.use_multiview
+    leave_plain(render)
+    render.use_multiview = multiview
+    _choose_format(scene)
+    if multiview:
+        render.image_settings.views_format = "INDIVIDUAL"
+        for number, other in enumerate(render.views):
+            other.use = other.name == view
+            other.file_suffix = f"_{number}"  # what the file gives may lead out of the folder
+    elif view:
+        scene.camera = scene.objects[view]
+    if box is not None:
+        _set_border(render, frame_of(render), box)
+    render.use_file_extension = True
+    render.filepath = str(folder / "picture")
 
 
 def _choose_format(scene: Any) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from ..compat import LAMPS, PASSES, has_node_switch, shadow_switch, uses_nodes
+from ..compat import PASSES, Lamps, has_node_switch, shadow_switch, uses_nodes
 from .base import Draw, panel, with_names_aside
 
 # Types of objects that have a surface or give light.
@@ -53,7 +53,7 @@ def ray_visibility(layout: Any, context: Any) -> None:
     shown = context.object
     is_lamp = shown.type == "LIGHT"
     column = layout.column()
-    column.active = is_lamp or (shown.is_instancer and LAMPS.instancer_hides)
+    column.active = is_lamp or (shown.is_instancer and Lamps.instancer_hides)
     for kind in ("camera", "diffuse", "glossy", *([] if is_lamp else ["shadow"])):
         column.prop(shown, f"visible_{kind}", text=kind.title())
 

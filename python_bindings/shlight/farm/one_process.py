@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Tasks one after the other, without Dask, in a process that can be ended at once: Blender's own end may hang."""
+"""A process that can be ended at once, as Blender's own end may hang, and tasks that one does without Dask."""
 
 from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from shlight.commands import interrupts_blocked
@@ -12,14 +13,45 @@ from shlight.farm.pictures import Source
 from shlight.farm.tasks import Result, Task, perform
 
 
+class CallsAside:
+    """Calls of a function in another process."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        spawning = multiprocessing.get_context("spawn")
+        self._channel, other_end = spawning.Pipe()
+        self._process = spawning.Process(target=_serve, args=(other_end, function), daemon=True)
+        with interrupts_blocked():
+            self._process.start()
+        other_end.close()
+
+    def call(self, *arguments: Any) -> Any:
+        """The function's result, or a RuntimeError with its reason. EOFError or OSError where the process dies."""
+        self._channel.send(arguments)
+        return self._channel.recv()
+
+    def close(self) -> None:
+        """Ends the process."""
+        self._process.kill()
+        self._process.join()
+        self._channel.close()
+
+
+def _serve(channel: Any, function: Callable[..., Any]) -> None:
+    while True:
+        arguments = channel.recv()
+        try:
+            channel.send(function(*arguments))
+        except Exception as error:
+            channel.send(RuntimeError(str(error) or type(error).__name__))
+
+
 class OneProcess:
     """Tasks that one other process does."""
 
     def __init__(self, source: Source, threads: int) -> None:
-        self._source, self._threads = source, threads
+        self._perform = partial(perform, source, threads=threads)
         self._tasks: list[Task] = []
-        self._process: Any = None
-        self._channel: Any = None
+        self._aside: CallsAside | None = None
 
     def submit(self, task: Task) -> None:
         """Puts a task behind the others."""
@@ -28,11 +60,9 @@ class OneProcess:
     def ended(self) -> list[tuple[Task, Callable[[], Result]]]:
         """The next task, with what gives its result or raises."""
         task = self._tasks.pop(0)
-        if self._process is None:
-            self._start()
+        self._aside = self._aside or CallsAside(self._perform)
         try:
-            self._channel.send(task)
-            result = self._channel.recv()
+            result = self._aside.call(task)
         except (EOFError, OSError):
             self.close()
             result = RuntimeError("the process died while it rendered it, killed or out of memory")
@@ -50,25 +80,6 @@ class OneProcess:
 
     def close(self) -> None:
         """Ends the process."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.join()
-            self._channel.close()
-            self._process = None
-
-    def _start(self) -> None:
-        spawning = multiprocessing.get_context("spawn")
-        self._channel, other_end = spawning.Pipe()
-        self._process = spawning.Process(target=_serve, args=(other_end, self._source, self._threads), daemon=True)
-        with interrupts_blocked():
-            self._process.start()
-        other_end.close()
-
-
-def _serve(channel: Any, source: Source, threads: int) -> None:
-    while True:
-        task = channel.recv()
-        try:
-            channel.send(perform(source, task, threads))
-        except Exception as error:
-            channel.send(RuntimeError(str(error) or type(error).__name__))
+        if self._aside is not None:
+            self._aside.close()
+            self._aside = None
