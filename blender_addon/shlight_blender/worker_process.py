@@ -101,7 +101,7 @@ class Stage:
 class WorkerError(Exception):
     """The worker failed; the message says why. exit_code: of a command that started it."""
 
-    def __init__(self, text: str, exit_code: int) -> None:
+    def __init__(self, text: str, exit_code: int = 1) -> None:
         super().__init__(text)
         self.exit_code = exit_code
 
@@ -145,7 +145,7 @@ class WorkerProcess:
             try:
                 kind, given = self._messages.recv()
             except (EOFError, OSError):
-                raise WorkerError(last_words(self._process.wait(), self._log), 1) from None
+                raise WorkerError(last_words(self._process.wait(), self._log)) from None
             if kind == "error":
                 raise WorkerError(*given)
             if kind == "stage":

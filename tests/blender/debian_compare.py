@@ -94,8 +94,8 @@ def compare():
         found["twice"] = str(error)
     found["stages"] = []
     while session.job is not None:
-        if session.job.stage.name not in found["stages"]:
-            found["stages"].append(session.job.stage.name)
+        if session.job.worker.stage.name not in found["stages"]:
+            found["stages"].append(session.job.worker.stage.name)
         yield
     for _ in range(3):
         yield
@@ -168,7 +168,7 @@ def undo_and_redo():
 def end_by(way):
     before = files()
     begin()
-    process = session.job._worker._process.pid
+    process = session.job.worker._process.pid
     for _ in range(5):
         yield
     running = session.job is not None and Path(f"/proc/{process}").exists()

@@ -49,7 +49,7 @@ def render(**what):
 
 def compare():
     if ready() and addon_utils.check("cycles")[1] and not bpy.app.is_job_running("RENDER"):
-        session = sys.modules[f"{ADDON}.compare.session"].session
+        session = sys.modules[f"{ADDON}.compare.job"].session
         if session.job is None:
             bpy.ops.shlight.compare("INVOKE_DEFAULT")
 

@@ -342,11 +342,11 @@ def test_only_one_runs_and_its_end_leaves_nothing(studio: Any) -> None:
         running = job.session.job = job.Job(bpy.context, denoise=False, reference_seconds=0.0)
         with pytest.raises(RuntimeError, match="a comparison is running"):
             bpy.ops.shlight.compare()
-        assert running.figures(60.0) is None
+        assert running.worker.result(60.0) is None
         assert running.folder.is_dir()
         end()
         assert files() == before, way
-        assert running._worker._process.returncode is not None
+        assert running.worker._process.returncode is not None
     shlight_blender.register()
 
 
@@ -366,7 +366,8 @@ def test_the_panel_shows_progress_and_what_was_found(studio: Any, monkeypatch: p
         preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
     )
     drawn = SimpleNamespace(layout=layout)
-    running = SimpleNamespace(stage=SimpleNamespace(name="Reference", seconds=3.0, share=0.25))
+    stage = SimpleNamespace(name="Reference", seconds=3.0, share=0.25)
+    running = SimpleNamespace(worker=SimpleNamespace(stage=stage))
     monkeypatch.setattr(job.session, "job", running)
     panel.comparison.draw(drawn, context)
     assert said == ["Reference (3 s), 25%", "Cancel"]

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
+from contextlib import ExitStack
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import bpy
@@ -14,77 +14,56 @@ from ..background import command, environment, save_unsaved_images
 from ..names import name_of, one_line
 from ..native import native_problem
 from ..running import ENGINE
-from ..worker_process import Stage, WorkerError, WorkerProcess
+from ..worker_process import WorkerError, WorkerProcess
 
 WORKER = "compare.render"
 MOST_SAMPLES = 2**16  # of the reference
 PAINTED_SOURCES = {"FILE", "GENERATED"}  # of images whose pixels may be in no file
 
 
-class CompareError(Exception):
-    """There is nothing to compare, or the comparison failed; the message says why."""
-
-
 class Job:
-    """One comparison, in a temporary folder."""
+    """One comparison, in a temporary folder. `end` ends the other Blender at once and removes the folder."""
 
     def __init__(self, context: Any, *, denoise: bool, reference_seconds: float) -> None:
-        """Writes the copy and starts the other Blender; CompareError where that cannot be."""
+        """Writes the copy and starts the other Blender; WorkerError where that cannot be."""
         _check(context)
         try:
-            self.folder = temporary_folder("shlight_compare_")
-        except OSError as error:
-            raise CompareError(one_line(error)) from error
-        try:
-            request = {
-                "samples": MOST_SAMPLES,
-                "scene": str(self.folder / "scene.blend"),
-                "scene_name": context.scene.name,
-                "view_layer": context.view_layer.name,
-                "use_scripts": context.preferences.filepaths.use_scripts_auto_execute and not bpy.app.autoexec_fail,
-                "denoise": denoise,
-                "reference_seconds": reference_seconds,
-                "images": _save_copy(context.scene, self.folder),
-                "measured": _measured_files(),
-            }
-            self._worker = WorkerProcess(command(WORKER), request, self.folder, environment())
-        except BaseException as error:
-            shutil.rmtree(self.folder, ignore_errors=True)
-            if isinstance(error, (OSError, RuntimeError)):
-                raise CompareError(one_line(error)) from error
-            raise
-
-    def figures(self, seconds: float = 0.0) -> dict[str, Any] | None:
-        """The figures once all is there, else None after so many seconds at most; CompareError if it fails."""
-        try:
-            return self._worker.result(seconds)
-        except WorkerError as error:
-            raise CompareError(str(error)) from error
-
-    @property
-    def stage(self) -> Stage:
-        """What is being done."""
-        return self._worker.stage
-
-    def end(self) -> None:
-        """Ends the other Blender at once and removes the folder."""
-        self._worker.end()
-        shutil.rmtree(self.folder, ignore_errors=True)
+            with ExitStack() as stack:
+                files = TemporaryDirectory(
+                    prefix="shlight_compare_", dir=bpy.app.tempdir or None, ignore_cleanup_errors=True
+                )
+                self.folder = Path(stack.enter_context(files))
+                request = {
+                    "samples": MOST_SAMPLES,
+                    "scene": str(self.folder / "scene.blend"),
+                    "scene_name": context.scene.name,
+                    "view_layer": context.view_layer.name,
+                    "use_scripts": context.preferences.filepaths.use_scripts_auto_execute and not bpy.app.autoexec_fail,
+                    "denoise": denoise,
+                    "reference_seconds": reference_seconds,
+                    "images": _save_copy(context.scene, self.folder),
+                    "measured": _measured_files(),
+                }
+                self.worker = WorkerProcess(command(WORKER), request, self.folder, environment())
+                stack.callback(self.worker.end)
+                self.end = stack.pop_all().close
+        except (OSError, RuntimeError) as error:
+            raise WorkerError(one_line(error)) from error
 
 
 def _check(context: Any) -> None:
     """Raises errors that can be found before anything is started."""
     scene = context.scene
     if problem := native_problem():
-        raise CompareError(problem)
+        raise WorkerError(problem)
     if scene.render.engine != ENGINE:
-        raise CompareError("choose shlight as the scene's render engine first")
+        raise WorkerError("choose shlight as the scene's render engine first")
     if getattr(scene, "cycles", None) is None:
-        raise CompareError("Cycles is not there: enable its add-on, Cycles Render Engine")
+        raise WorkerError("Cycles is not there: enable its add-on, Cycles Render Engine")
     if scene.camera is None:
-        raise CompareError(f"scene '{name_of(scene)}' has no camera")
+        raise WorkerError(f"scene '{name_of(scene)}' has no camera")
     if bpy.app.is_job_running("RENDER"):
-        raise CompareError("a render is running; wait for its end")
+        raise WorkerError("a render is running; wait for its end")
 
 
 def _save_copy(scene: Any, folder: Path) -> dict[str, str]:
@@ -107,11 +86,6 @@ def _measured_files() -> dict[str, str]:
     return {name: str(path) for name, path in own.items() if path is not None}
 
 
-def temporary_folder(prefix: str) -> Path:
-    """A folder that goes with Blender's temporary files, if not before."""
-    return Path(tempfile.mkdtemp(prefix=prefix, dir=bpy.app.tempdir or None))
-
-
 class Session:
     """At most one job at a time."""
 
@@ -129,7 +103,7 @@ class Session:
         """Shows the state in the status bar and the panel."""
         text = None
         if self.job:
-            stage = self.job.stage
+            stage = self.job.worker.stage
             text = f"Compare with Cycles: {stage.name} ({stage.seconds:.0f} s)   Esc: cancel"
         for window in bpy.context.window_manager.windows:
             with bpy.context.temp_override(window=window):

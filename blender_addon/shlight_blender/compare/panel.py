@@ -11,38 +11,39 @@ from ..compat import draw_progress
 from ..names import name_of, one_line
 from ..ui.base import draw_text, panel, with_names_aside
 from ..ui.report import SHLIGHT_OT_show_place, leads_somewhere
+from ..worker_process import WorkerError
 from . import overlay, results
-from .job import CompareError, Job, session
+from .job import Job, session
 from .pictures import light_name
 
 TICK_SECONDS = 0.2
 GRASP = 12.0  # pixels beside the line of the split
 
-DENOISE: dict[str, Any] = {
-    "name": "Denoise",
-    "description": "Cycles denoises its picture, which counts as its time",
-    "default": False,
-}
-REFERENCE_SECONDS: dict[str, Any] = {
-    "name": "Reference",
-    "description": "Time for a reference, which Cycles renders. At 0 there is none",
-    "default": 0.0,
-    "min": 0.0,
-    "soft_max": 600.0,
-    "unit": "TIME_ABSOLUTE",
-    "step": 100,
-}
+
+class Effort:
+    """What is asked of Cycles, in the panel and by the operator."""
+
+    denoise: bpy.props.BoolProperty(
+        name="Denoise", description="Cycles denoises its picture, which counts as its time", default=False
+    )
+    reference_seconds: bpy.props.FloatProperty(
+        name="Reference",
+        description="Time for a reference, which Cycles renders. At 0 there is none",
+        default=0.0,
+        min=0.0,
+        soft_max=600.0,
+        unit="TIME_ABSOLUTE",
+        step=100,
+    )
 
 
 def _move_split(settings: Any, context: Any) -> None:
     results.show_split(settings.split)
 
 
-class SHLIGHT_CompareSettings(bpy.types.PropertyGroup):
+class SHLIGHT_CompareSettings(Effort, bpy.types.PropertyGroup):
     """Settings of the comparison, and the position of the split."""
 
-    denoise: bpy.props.BoolProperty(**DENOISE)
-    reference_seconds: bpy.props.FloatProperty(**REFERENCE_SECONDS)
     split: bpy.props.FloatProperty(
         name="Split",
         description="Share of the width that shows shlight's picture; the rest shows Cycles'",
@@ -54,15 +55,12 @@ class SHLIGHT_CompareSettings(bpy.types.PropertyGroup):
     )
 
 
-class SHLIGHT_OT_compare(bpy.types.Operator):
+class SHLIGHT_OT_compare(Effort, bpy.types.Operator):
     """Renders the frame with shlight, and with Cycles in the same time, in another Blender"""
 
     bl_idname = "shlight.compare"
     bl_label = "Compare with Cycles"
     bl_options = {"REGISTER"}
-
-    denoise: bpy.props.BoolProperty(**DENOISE)
-    reference_seconds: bpy.props.FloatProperty(**REFERENCE_SECONDS)
 
     def execute(self, context: Any) -> set[str]:
         """Compares while Blender waits."""
@@ -71,7 +69,7 @@ class SHLIGHT_OT_compare(bpy.types.Operator):
         try:
             while not self._finish(TICK_SECONDS):
                 pass
-        except CompareError as error:
+        except WorkerError as error:
             return self._fail(error)
         finally:
             session.end()
@@ -100,7 +98,7 @@ class SHLIGHT_OT_compare(bpy.types.Operator):
             return {"PASS_THROUGH"}
         try:
             finished = self._finish()
-        except CompareError as error:
+        except WorkerError as error:
             session.end()
             return self._fail(error)
         if not finished:
@@ -118,9 +116,9 @@ class SHLIGHT_OT_compare(bpy.types.Operator):
     def _begin(self, context: Any) -> bool:
         try:
             if session.job is not None:
-                raise CompareError("a comparison is running; Esc in its window cancels it")
+                raise WorkerError("a comparison is running; Esc in its window cancels it")
             self._job = session.job = Job(context, denoise=self.denoise, reference_seconds=self.reference_seconds)
-        except CompareError as error:
+        except WorkerError as error:
             self._fail(error)
             return False
         self._scene = name_of(context.scene)
@@ -128,18 +126,18 @@ class SHLIGHT_OT_compare(bpy.types.Operator):
 
     def _finish(self, seconds: float = 0.0) -> bool:
         """Takes the results over if they are there, for which it waits so long."""
-        figures = self._job.figures(seconds)
+        figures = self._job.worker.result(seconds)
         if figures is None:
             return False
         try:
             results.load(self._job.folder, figures, self._scene)
         except (OSError, RuntimeError) as error:
             results.remove()
-            raise CompareError(one_line(error)) from error
+            raise WorkerError(one_line(error)) from error
         overlay.add()
         return True
 
-    def _fail(self, error: CompareError) -> set[str]:
+    def _fail(self, error: WorkerError) -> set[str]:
         self.report({"ERROR"}, f"shlight: {error}")
         return {"CANCELLED"}
 
@@ -242,7 +240,7 @@ class SHLIGHT_OT_drag_split(bpy.types.Operator):
 def comparison(layout: Any, context: Any) -> None:
     """The comparison."""
     if session.job is not None:
-        stage = session.job.stage
+        stage = session.job.worker.stage
         draw_progress(layout, f"{stage.name} ({stage.seconds:.0f} s)", stage.share)
         layout.operator(SHLIGHT_OT_cancel_comparison.bl_idname, text="Cancel", icon="X")
         return

@@ -8,6 +8,7 @@ are in no file before it quits.
 from __future__ import annotations
 
 import shutil
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..names import name_of
-from .job import temporary_folder
 from .pictures import difference_limit, in_palette
 
 COMPARISON, DIFFERENCE, REFERENCE = "shlight Comparison", "shlight Difference", "shlight Reference"
@@ -67,7 +67,9 @@ def load(folder: Path, figures: dict[str, Any], scene: str) -> None:
     arrays = [np.load(folder / f"{name}.npy")[::-1] for name in names]
     before = shown()
     remove()
-    last = Results(scene, figures, temporary_folder("shlight_results_"), *arrays)
+    last = Results(
+        scene, figures, Path(tempfile.mkdtemp(prefix="shlight_results_", dir=bpy.app.tempdir or None)), *arrays
+    )
     make_images()
     show(before)
 

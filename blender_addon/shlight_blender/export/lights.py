@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from ..compat import Lamps, lamp_casts_shadows, lamp_is_normalized, lamp_tint, p
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .materials import with_light
-from .nodes import RGB, Surroundings, TreeReader, rgb
+from .nodes import RGB, Surroundings, TreeReader
 from .shaders import NODES
 from .textured_lamps import UNIT_SQUARE, EvenLamp, EvenPart, even_lamp
 
@@ -28,16 +28,6 @@ SMALLEST_SPREAD = math.radians(0.1)
 ROUND_SHAPES = {"DISK", "ELLIPSE"}
 
 
-class Traits(TypedDict):
-    """Arguments that every `shlight.Scene.add_…_light` takes."""
-
-    shadows: bool
-    diffuse: bool
-    glossy: bool
-    camera: bool
-    group: str | None
-
-
 class Lamp(NamedTuple):
     """A lamp that gives light."""
 
@@ -46,11 +36,12 @@ class Lamp(NamedTuple):
     parts: list[EvenPart]  # of an area lamp with a texture; their emission is power, as if all of it shone like them
     to_world: NDArray[np.float64]  # (4, 4)
     place: str  # how the report names it
-    traits: Traits
+    traits: dict[str, Any]  # arguments that every `shlight.Scene.add_…_light` takes
 
-    def place_in_world(self) -> tuple[float, float, float]:
-        x, y, z = (float(c) for c in self.to_world[:3, 3])
-        return x, y, z
+    @property
+    def location(self) -> NDArray[np.float64]:
+        """Its place in the world (3,)."""
+        return self.to_world[:3, 3]
 
 
 def add_lamp(
@@ -81,7 +72,7 @@ def add_lamp(
     if not power.any():
         return False
     shown_by = [lamp_object] if instancer is None or not Lamps.instancer_hides else [lamp_object, instancer]
-    traits: Traits = {
+    traits = {
         "shadows": lamp_casts_shadows(lamp),
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
         "camera": all(shown.visible_camera for shown in shown_by),
@@ -113,11 +104,10 @@ def _glow_of_nodes(lamp: Any, place: str, report: ExportReport, surroundings: Su
 def _add_point(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     radius = float(lamp.data.shadow_soft_size)
     if radius <= 0.0:
-        scene.add_point_light(lamp.place_in_world(), rgb(_intensity(lamp)), **lamp.traits)
+        scene.add_point_light(lamp.location, _intensity(lamp), **lamp.traits)
         return True
     radiance = _intensity(lamp) / (math.pi * radius * radius)
-    disk = point_is_disk(lamp.data)
-    scene.add_sphere_light(lamp.place_in_world(), radius, rgb(radiance), facing_disk=disk, **lamp.traits)
+    scene.add_sphere_light(lamp.location, radius, radiance, facing_disk=point_is_disk(lamp.data), **lamp.traits)
     return True
 
 
@@ -148,11 +138,11 @@ def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
         report.add(lamp.place, "its scale is 0; left out", Effect.LIGHT)
         return False
     scene.add_spot_light(
-        lamp.place_in_world(),
+        lamp.location,
         direction,
         float(lamp.data.spot_size),
         float(lamp.data.spot_blend),
-        rgb(_intensity(lamp)),
+        _intensity(lamp),
         radius=float(lamp.data.shadow_soft_size),
         facing_disk=point_is_disk(lamp.data),
         times_cosine=Lamps.spot_times_cosine,
@@ -168,16 +158,13 @@ def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
         return False
     angle = float(lamp.data.angle)
     if Lamps.sun_is_tangent and angle > WIDEST_TANGENT_SUN:
-        report.add(
-            lamp.place,
-            f"a sun wider than {math.degrees(WIDEST_TANGENT_SUN):.0f}° is drawn as wide as that",
-            Effect.SLIGHT,
-        )
+        text = f"a sun wider than {math.degrees(WIDEST_TANGENT_SUN):.0f}° is drawn as wide as that"
+        report.add(lamp.place, text, Effect.SLIGHT)
         angle = WIDEST_TANGENT_SUN
     irradiance = lamp.power
     if not lamp_is_normalized(lamp.data) and angle > 0.0:
         irradiance = irradiance * (math.pi * math.sin(0.5 * angle) ** 2)
-    scene.add_sun_light(direction, angle, rgb(irradiance), tangent=Lamps.sun_is_tangent, **lamp.traits)
+    scene.add_sun_light(direction, angle, irradiance, tangent=Lamps.sun_is_tangent, **lamp.traits)
     return True
 
 
@@ -225,11 +212,11 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     factor = Lamps.area / area if lamp_is_normalized(data) else 1.0 / math.pi
     if is_round and not lamp.parts:
         u, v = half_axes[::-1] if _turns_right(lamp.to_world) else half_axes
-        scene.add_disk_light(lamp.place_in_world(), u, v, rgb(factor * lamp.power), spread=spread, **lamp.traits)
+        scene.add_disk_light(lamp.location, u, v, factor * lamp.power, spread=spread, **lamp.traits)
         return True
     for corners, power in lamp.parts or [EvenPart(UNIT_SQUARE, lamp.power)]:
         outline = area_corners(data, lamp.to_world, corners)
-        scene.add_polygon_light(outline, rgb(factor * power), spread=spread, **lamp.traits)
+        scene.add_polygon_light(outline, factor * power, spread=spread, **lamp.traits)
     return True
 
 

@@ -28,11 +28,6 @@ from .object_values import ObjectValues
 RGB = NDArray[np.float64]
 
 
-def rgb(values: RGB) -> tuple[float, float, float]:
-    """A colour as the core takes it."""
-    return float(values[0]), float(values[1]), float(values[2])
-
-
 @dataclass(frozen=True)
 class Origin:
     """The source of a socket's value: `node` and its output, or no node and the value of the last `socket`.
