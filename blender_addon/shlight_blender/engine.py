@@ -96,7 +96,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 frame.width,
                 frame.height,
                 progress=lambda _: not self.test_break(),
-                **preview_settings(depsgraph.scene).arguments(),
+                **preview_settings(depsgraph.scene),
             )
         except (ExportError, shlight.RenderCancelled):
             pass
@@ -134,7 +134,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         try:
             self._check("Exporting the scene")
             exported = self._export(depsgraph, frame, view)
-            settings = render_settings(depsgraph.scene).arguments()
+            settings = render_settings(depsgraph.scene)
             passes = pass_arguments(depsgraph.scene, depsgraph.view_layer)
             denoises = depsgraph.scene.shlight.use_denoising and shlight.has_denoiser()
             record.last.export_seconds = time.perf_counter() - start

@@ -210,7 +210,7 @@ class RenderedViewport:
             self._updated = f"{changes.parts()} in {1e3 * (time.perf_counter() - start):.0f} ms"
             record.show_viewport(depsgraph.scene, self._exported)
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
-            self._maker.start(Job(self._exported.scene, view.frame, settings.arguments(), denoises))
+            self._maker.start(Job(self._exported.scene, view.frame, settings, denoises))
         self._shown = needed
 
     def _bake(self, world: Any, scene: Any) -> Any:

@@ -49,7 +49,7 @@ def test_a_render_is_denoised_where_its_scene_says_so(studio: Any) -> None:
 def test_a_viewport_is_denoised_at_its_end(studio: Any) -> None:
     build(studio)
     scene, frame = export_scene(bpy.context.evaluated_depsgraph_get()).scene, whole_frame(64, 48)
-    job = Job(scene, frame, viewport_settings(studio.scene).arguments(), denoises=True)
+    job = Job(scene, frame, viewport_settings(studio.scene), denoises=True)
     shown: list[Any] = []
     maker = PictureMaker(lambda: shown.append(maker.picture))
     maker.start(job)

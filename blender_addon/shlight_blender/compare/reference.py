@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
 
@@ -46,10 +46,6 @@ class Request:
     reference_seconds: float  # for the reference; 0: as long as the samples take, in the panel none
     noise: float = 0.0  # relMSE of the reference's own noise at which it ends
     denoise: bool = False  # Cycles' picture of shlight's time
-
-    def to_data(self) -> dict[str, Any]:
-        """The request as plain data."""
-        return asdict(self)
 
 
 @dataclass

@@ -7,7 +7,7 @@ from .bake import bake_in_background, kept_world
 from .camera import Eye, aperture_of, panorama_of, set_panorama, set_projection
 from .changes import Changes, changes_of, everything
 from .scene import ExportedScene, export_scene
-from .settings import RenderSettings, preview_settings, render_settings, viewport_settings
+from .settings import preview_settings, render_settings, viewport_settings
 
 __all__ = [
     "Changes",
@@ -16,7 +16,6 @@ __all__ = [
     "ExportedScene",
     "Eye",
     "Frame",
-    "RenderSettings",
     "aperture_of",
     "bake_in_background",
     "changes_of",

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -21,84 +20,56 @@ PASSES_WRITTEN = {"use_pass_combined", *PASSES, *(f"use_pass_cryptomatte_{kind}"
 PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
 
 
-@dataclass(frozen=True)
-class RenderSettings:
-    """Arguments of `shlight.render` as the scene's panel and Blender's own settings have them."""
-
-    order: int | str
-    tolerance: float
-    noise_threshold: float
-    min_samples: int | None
-    max_samples: int | None
-    pixel_samples: int | None
-    time_limit: float | None
-    pixel_filter: str
-    filter_width: float
-    shadow_rays: int
-    transparent_bounces: int
-    max_bounces: int
-    glossy_bounces: int
-    transmission_bounces: int
-    exposure: float
-    threads: int
-
-    def arguments(self) -> dict[str, Any]:
-        """The settings as keyword arguments of `shlight.render`."""
-        return dict(self.__dict__)
-
-
-def render_settings(scene: Any) -> RenderSettings:
-    """Reads `scene.shlight`, the threads of `scene.render`, and Cycles' filter, exposure and transparent bounces."""
+def render_settings(scene: Any) -> dict[str, Any]:
+    """Arguments of `shlight.render`: `scene.shlight`, `scene.render`'s threads, and Cycles' filter and exposure."""
     settings = scene.shlight
     render = scene.render
     cycles = getattr(scene, "cycles", None)  # its add-on may be off
     older = int(settings.pixel_samples)
-    return RenderSettings(
-        order="auto" if settings.order == "AUTO" else int(settings.order),
-        tolerance=float(settings.tolerance),
-        noise_threshold=float(settings.noise_threshold),
-        min_samples=None if older else min(int(settings.min_samples), int(settings.max_samples)),
-        max_samples=None if older else int(settings.max_samples),
-        pixel_samples=older or None,
-        time_limit=float(settings.time_limit) or None,
-        pixel_filter=str(getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS")).lower(),
-        filter_width=float(getattr(cycles, "filter_width", render.filter_size)),
-        shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
-        transparent_bounces=int(getattr(cycles, "transparent_max_bounces", 8)),
-        max_bounces=int(settings.max_bounces),
-        glossy_bounces=int(settings.glossy_bounces),
-        transmission_bounces=int(settings.transmission_bounces),
-        exposure=float(getattr(cycles, "film_exposure", 1.0)),
-        threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
-    )
+    return {
+        "order": "auto" if settings.order == "AUTO" else int(settings.order),
+        "tolerance": float(settings.tolerance),
+        "noise_threshold": float(settings.noise_threshold),
+        "min_samples": None if older else min(int(settings.min_samples), int(settings.max_samples)),
+        "max_samples": None if older else int(settings.max_samples),
+        "pixel_samples": older or None,
+        "time_limit": float(settings.time_limit) or None,
+        "pixel_filter": str(getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS")).lower(),
+        "filter_width": float(getattr(cycles, "filter_width", render.filter_size)),
+        "shadow_rays": int(settings.shadow_rays) if settings.use_shadows else 0,
+        "transparent_bounces": int(getattr(cycles, "transparent_max_bounces", 8)),
+        "max_bounces": int(settings.max_bounces),
+        "glossy_bounces": int(settings.glossy_bounces),
+        "transmission_bounces": int(settings.transmission_bounces),
+        "exposure": float(getattr(cycles, "film_exposure", 1.0)),
+        "threads": int(render.threads) if render.threads_mode == "FIXED" else 0,
+    }
 
 
-def viewport_settings(scene: Any) -> RenderSettings:
+def viewport_settings(scene: Any) -> dict[str, Any]:
     """`render_settings` with the viewport's settings in place of those of final renders."""
     own = scene.shlight
-    return replace(
-        render_settings(scene),
-        noise_threshold=float(own.preview_noise_threshold),
-        min_samples=min(int(own.preview_min_samples), int(own.preview_max_samples)),
-        max_samples=int(own.preview_max_samples),
-        pixel_samples=None,
-        time_limit=float(own.preview_time_limit) or None,
-        max_bounces=int(own.preview_max_bounces),
-    )
+    return render_settings(scene) | {
+        "noise_threshold": float(own.preview_noise_threshold),
+        "min_samples": min(int(own.preview_min_samples), int(own.preview_max_samples)),
+        "max_samples": int(own.preview_max_samples),
+        "pixel_samples": None,
+        "time_limit": float(own.preview_time_limit) or None,
+        "max_bounces": int(own.preview_max_bounces),
+    }
 
 
-def preview_settings(scene: Any) -> RenderSettings:
+def preview_settings(scene: Any) -> dict[str, Any]:
     """Settings of a small picture in a panel, which must appear at once."""
-    return replace(
-        render_settings(scene),
-        tolerance=0.01,
-        noise_threshold=0.1,
-        min_samples=1,
-        max_samples=16,
-        pixel_samples=None,
-        time_limit=0.15,
-        threads=0,  # Blender asks for one
-    )
+    return render_settings(scene) | {
+        "tolerance": 0.01,
+        "noise_threshold": 0.1,
+        "min_samples": 1,
+        "max_samples": 16,
+        "pixel_samples": None,
+        "time_limit": 0.15,
+        "threads": 0,  # Blender asks for one
+    }
 
 
 def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:

@@ -19,6 +19,14 @@ from .value_nodes import VALUE_NODES
 TINT_LUMINANCE = (0.3, 0.6, 0.1)
 
 
+# Inputs of the layered Principled BSDF, which are arguments of `nodes.principled`.
+PRINCIPLED_NUMBERS = (
+    "Metallic", "Roughness", "IOR", "Alpha", "Diffuse Roughness", "Specular IOR Level", "Coat Weight",
+    "Coat Roughness", "Coat IOR", "Transmission Weight", "Emission Strength",
+)  # fmt: skip
+PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Emission Color")
+
+
 def read_principled(inputs: NodeInputs) -> Shader:
     """Shader of a Principled BSDF node."""
     for name, neutral in PRINCIPLED_UNSUPPORTED.items():
@@ -31,25 +39,14 @@ def _read_layered(inputs: NodeInputs) -> Shader:
         inputs.remark_hidden_behind("'Transmission Weight'")
     if inputs.number("Subsurface Weight").constant != 0.0:
         inputs.remark("'Subsurface Weight' is not supported; drawn as diffuse reflection")
+    given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
+    given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
         inputs.color("Base Color"),
-        metallic=inputs.number("Metallic"),
-        roughness=inputs.number("Roughness"),
-        ior=inputs.number("IOR"),
-        alpha=inputs.number("Alpha"),
-        diffuse_roughness=inputs.number("Diffuse Roughness"),
-        specular_ior_level=inputs.number("Specular IOR Level"),
-        specular_tint=inputs.color("Specular Tint"),
-        coat_weight=inputs.number("Coat Weight"),
-        coat_roughness=inputs.number("Coat Roughness"),
-        coat_ior=inputs.number("Coat IOR"),
-        coat_tint=inputs.color("Coat Tint"),
         coat_normal=inputs.linked_vector("Coat Normal"),
-        transmission_weight=inputs.number("Transmission Weight"),
-        emission_color=inputs.color("Emission Color"),
-        emission_strength=inputs.number("Emission Strength"),
         several_bounces=inputs.node.distribution == "MULTI_GGX",
         at=inputs.linked_vector("Normal"),
+        **{name.lower().replace(" ", "_"): value for name, value in given.items()},
     )
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -143,28 +143,28 @@ def _curves(inputs: NodeInputs) -> tuple[CurveRange, list[Function]]:
     return CurveRange(low, high, mapping_.extend == "EXTRAPOLATED"), functions
 
 
+def _curved(own: Iterable[Value], functions: Iterable[Function], spread: CurveRange, t: Value) -> list[Value]:
+    return [(1.0 - t) * a + t * spread.curve(f, a) for a, f in zip(own, functions, strict=False)]
+
+
 def _after(second: Function, first: Function) -> Function:
     return lambda x: second(first(x))
 
 
 def _rgb_curves(inputs: NodeInputs) -> Color:
     spread, (*channels, whole) = _curves(inputs)
-    own, t = inputs.color("Color"), inputs.number("Fac")
-    changed = [spread.curve(_after(f, whole), value) for f, value in zip(channels, own, strict=True)]
-    return Color(*((1.0 - t) * a + t * b for a, b in zip(own, changed, strict=True)))
+    functions = [_after(f, whole) for f in channels]
+    return Color(*_curved(inputs.color("Color"), functions, spread, inputs.number("Fac")))
 
 
 def _vector_curves(inputs: NodeInputs) -> Vector:
     spread, functions = _curves(inputs)
-    own, t = inputs.vector("Vector"), inputs.number("Fac")
-    changed = [spread.curve(f, value) for f, value in zip(functions[:3], own, strict=True)]
-    return Vector(*((1.0 - t) * a + t * b for a, b in zip(own, changed, strict=True)))
+    return Vector(*_curved(inputs.vector("Vector"), functions, spread, inputs.number("Fac")))
 
 
 def _float_curve(inputs: NodeInputs) -> Value:
     spread, functions = _curves(inputs)
-    own, t = inputs.number("Value"), inputs.number("Factor")
-    return (1.0 - t) * own + t * spread.curve(functions[0], own)
+    return _curved([inputs.number("Value")], functions, spread, inputs.number("Factor"))[0]
 
 
 def _component(inputs: NodeInputs, v: Vector) -> Value:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import platform
+from dataclasses import asdict
 from importlib import metadata
 from typing import Any
 
@@ -19,7 +20,7 @@ from .options import Options
 def add_circumstances(figures: dict[str, Any], options: Options) -> None:
     """Adds where, with what and with which options the figures came about."""
     figures["scene"]["file"] = options.request.scene
-    figures["options"] = options.request.to_data() | {"scene": options.scene, "out": str(options.out)}
+    figures["options"] = asdict(options.request) | {"scene": options.scene, "out": str(options.out)}
     figures["versions"] = {
         "shlight": metadata.version("shlight"),
         "blender": figures.pop("blender"),

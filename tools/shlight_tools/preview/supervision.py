@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ def run_worker(
     tick() is called a few times a second, with what is being done and the figures that are known already, and ends the
     worker by raising an exception.
     """
-    worker = WorkerProcess([sys.executable, "-m", module], request.to_data(), folder, dict(os.environ))
+    worker = WorkerProcess([sys.executable, "-m", module], asdict(request), folder, dict(os.environ))
     try:
         while (figures := worker.result()) is None:
             tick(worker.stage, worker.known)
