@@ -3,7 +3,8 @@
 
 `WorkerProcess` starts it, reads its messages without waiting for it, and ends it for good: Blender renders in one, and
 whatever it prints, and even its crash, then ends in one clear line. `serve` is what runs in it. Its last two arguments
-are a folder, which holds request.json and takes what it makes, and a file descriptor for messages. A message is a pair:
+are a folder, which holds request.json and takes what it makes, and a file descriptor for messages. A message is a line
+of JSON, a pair:
     "stage" and the arguments of Stage: what is done from now on
     "known" and figures by name: of the result, already
     "result" and figures by name: the rest of it, or
@@ -16,6 +17,7 @@ import ctypes
 import importlib.util
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -24,8 +26,6 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from multiprocessing import Pipe
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -43,16 +43,21 @@ class SceneError(RuntimeError):
 class Channel:
     """The way to the process that wants to know."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
 
     def stage(self, name: str, expected_seconds: float = 0.0) -> None:
         """Says what is done from now on; 0: nobody knows how long."""
-        self._connection.send(("stage", (name, expected_seconds)))
+        self.send("stage", (name, expected_seconds))
 
     def known(self, **figures: Any) -> None:
         """Says what of the result is known."""
-        self._connection.send(("known", figures))
+        self.send("known", figures)
+
+    def send(self, kind: str, given: Any) -> None:
+        """Sends any message."""
+        self._stream.write(json.dumps([kind, given]) + "\n")
+        self._stream.flush()
 
 
 Work = Callable[[dict[str, Any], Path, Channel], dict[str, Any]]
@@ -65,14 +70,15 @@ def serve(work: Work, argv: list[str]) -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     folder = Path(argv[-2])
     request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
-    with Connection(int(argv[-1]), readable=False) as connection:
+    with os.fdopen(int(argv[-1]), "w", encoding="utf-8") as stream:
+        channel = Channel(stream)
         try:
-            connection.send(("result", work(request, folder, Channel(connection))))
+            channel.send("result", work(request, folder, channel))
         except Exception as error:
             traceback.print_exc()
             # Blender's operators fail with RuntimeErrors, whose text says enough.
             kind = "" if isinstance(error, RuntimeError) else f"{type(error).__name__}: "
-            connection.send(("error", (kind + one_line(error), getattr(error, "exit_code", 1))))
+            channel.send("error", (kind + one_line(error), getattr(error, "exit_code", 1)))
 
 
 LOG = "blender.log"
@@ -123,7 +129,9 @@ class WorkerProcess:
         self._log = folder / LOG
         self.known: dict[str, Any] = {}
         self.stage = Stage()
-        self._messages, other_end = Pipe(duplex=False)
+        self._pending = b""
+        # Not those of multiprocessing: Debian's Blender 3.4 crashes at its end where that module is imported.
+        self._messages, other_end = (os.fdopen(end, mode, 0) for end, mode in zip(os.pipe(), ("rb", "wb"), strict=True))
         with other_end, self._log.open("wb") as log:
             self._process = subprocess.Popen(
                 [*command, str(folder), str(other_end.fileno())],
@@ -141,19 +149,20 @@ class WorkerProcess:
 
         `known` has those that are known before, `stage` what is being done.
         """
-        while self._messages.poll(seconds):
-            try:
-                kind, given = self._messages.recv()
-            except (EOFError, OSError):
-                raise WorkerError(last_words(self._process.wait(), self._log)) from None
-            if kind == "error":
-                raise WorkerError(*given)
-            if kind == "stage":
-                self.stage = Stage(*given)
-                continue
-            self.known |= given
-            if kind == "result":
-                return self.known
+        while select.select([self._messages], [], [], seconds)[0]:
+            received = self._messages.read(65536)
+            if not received:
+                raise WorkerError(last_words(self._process.wait(), self._log))
+            *lines, self._pending = (self._pending + received).split(b"\n")
+            for kind, given in map(json.loads, lines):
+                if kind == "error":
+                    raise WorkerError(*given)
+                if kind == "stage":
+                    self.stage = Stage(*given)
+                    continue
+                self.known |= given
+                if kind == "result":
+                    return self.known
             seconds = 0.0
         return None
 

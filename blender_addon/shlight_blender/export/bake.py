@@ -28,6 +28,7 @@ from .bake_key import bake_key
 from .nodes import all_nodes
 
 WORKER = "export.bake_worker"
+BAKED = "baked.npz"  # the file that it leaves; rows of suns are their directions, angles and irradiances
 LONGEST_SECONDS = 1800.0
 TICK_SECONDS = 0.1
 MOST_KEPT_BYTES = 2**28  # ten pictures 2048 texels wide; the last one is kept whatever its size
@@ -185,13 +186,14 @@ def _baked(request: dict[str, Any], folder: Path, waiting: Waiting | None) -> Ba
     try:
         worker = WorkerProcess(command(WORKER), request, folder, environment())
         try:
-            while (figures := worker.result(TICK_SECONDS)) is None:
+            while worker.result(TICK_SECONDS) is None:
                 if waiting is not None and not waiting("Baking the world"):
                     return None
                 if time.monotonic() > end:
                     raise BakeError(f"it takes longer than {LONGEST_SECONDS:.0f} s")
         finally:
             worker.end()
-        return Baked(np.load(folder / "picture.npy", allow_pickle=False), figures["suns"])
+        with np.load(folder / BAKED, allow_pickle=False) as found:
+            return Baked(found["picture"], [Sun(row[:3], float(row[3]), row[4:]) for row in found["suns"]])
     except (WorkerError, OSError, ValueError) as error:
         raise BakeError(one_line(error)) from error

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Blender that bakes a world for `bake`.
 
-The folder holds world.blend, and the pixels of images whose changes are in no file. Written is picture.npy, float32
-(width / 2, width, 3) with the mapping of `shlight.Scene.set_environment`; the figures are "suns", a list of `bake.Sun`.
+The folder holds world.blend, and the pixels of images whose changes are in no file. Written is a file of "picture",
+float32 (width / 2, width, 3) with the mapping of `shlight.Scene.set_environment`, and of "suns" (n, 7).
 
 A sky's sun disc is narrower than a few texels. It is left out of the picture, and its irradiance is that of two renders
 with and without it, of a small part of the sky at 128 x 128 pixels.
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..background import last_picture, leave_plain, load_unsaved_images, set_threads, use_cycles
 from ..compat import panorama_settings
 from ..worker_process import Channel, serve
-from .bake import Sun
+from .bake import BAKED
 from .images import BRIGHTEST
 from .world import DIFFUSE_RAY
 
@@ -115,7 +115,7 @@ class Baker:
                 elif node.type == "LIGHT_PATH":
                     _be_diffuse_ray(tree, node)
 
-    def bake(self) -> tuple[Picture, list[Sun]]:
+    def bake(self) -> tuple[Picture, list[Array]]:
         """The picture without narrow suns, and these."""
         suns = [node for tree in self._trees for node in tree.nodes if _has_narrow_sun(node)]
         for node in suns:
@@ -124,8 +124,8 @@ class Baker:
         measured = [self._measure(node) for node in suns]
         return picture, [sun for sun in measured if sun is not None]
 
-    def _measure(self, node: Any) -> Sun | None:
-        """The sun of a sky texture, whose disc is off; None if it gives no light.
+    def _measure(self, node: Any) -> Array | None:
+        """The sun (7,) of a sky texture, whose disc is off; None if it gives no light.
 
         It is looked at ever closer until it fills half the picture.
         """
@@ -139,7 +139,7 @@ class Baker:
             if towards is None:
                 raise RuntimeError(f"the sun of '{node.name}' was found and then not met")
             if width <= 2.0 * angle:
-                return Sun(-towards, angle, irradiance)
+                return np.array([*-towards, angle, *irradiance])
             width = max(2.0 * angle, width / ZOOM)
         return None
 
@@ -194,8 +194,8 @@ def _has_narrow_sun(node: Any) -> bool:
 def bake(request: dict[str, Any], folder: Path, _: Channel) -> dict[str, Any]:
     """Bakes what is asked for."""
     picture, suns = Baker(folder, request).bake()
-    np.save(folder / "picture.npy", np.ascontiguousarray(picture, dtype=np.float32))
-    return {"suns": suns}
+    np.savez(folder / BAKED, picture=picture, suns=np.reshape(suns, (-1, 7)))
+    return {}
 
 
 def main(arguments: list[str]) -> None:
