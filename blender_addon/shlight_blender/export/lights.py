@@ -168,34 +168,12 @@ def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     return True
 
 
-def area_corners(
-    lamp: Any, to_world: NDArray[np.float64], corners: NDArray[np.float64] = UNIT_SQUARE
-) -> NDArray[np.float64]:
-    """Corners of (a part of) an area lamp in the world, counter-clockwise seen from the side it shines to (its -Z).
-
-    corners: (k, 2), (0, 0) … (1, 1) along the lamp's x and y, counter-clockwise; by default all of the lamp.
-    """
-    half_x, half_y = _half_axes(lamp, to_world)
-    placed = to_world[:3, 3] + (2.0 * corners - 1.0) @ np.stack([half_x, half_y])
-    return placed[::-1] if _turns_right(to_world) else placed
-
-
-def _half_axes(lamp: Any, to_world: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The half axes of an area lamp along its x and y, (3,) each."""
-    height = lamp.size_y if lamp.shape in {"RECTANGLE", "ELLIPSE"} else lamp.size
-    return 0.5 * float(lamp.size) * to_world[:3, 0], 0.5 * float(height) * to_world[:3, 1]
-
-
-def _turns_right(to_world: NDArray[np.float64]) -> bool:
-    """True if a lamp's x is turned clockwise to its y, seen from the side that it shines to; not if it is mirrored."""
-    return float(np.linalg.det(to_world[:3, :3])) > 0.0
-
-
 def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     data = lamp.data
     axis_x, axis_y, axis_z = lamp.to_world[:3, :3].T
-    half_axes = _half_axes(data, lamp.to_world)
-    area = 4.0 * float(np.linalg.norm(half_axes[0]) * np.linalg.norm(half_axes[1]))
+    height = data.size_y if data.shape in {"RECTANGLE", "ELLIPSE"} else data.size
+    half_axes = np.array([0.5 * float(data.size) * axis_x, 0.5 * float(height) * axis_y])
+    area = 4.0 * float(np.linalg.norm(half_axes, axis=1).prod())
     if area <= 0.0 or not np.linalg.norm(axis_z) > 0.0:
         report.add(lamp.place, "its area is 0; left out", Effect.LIGHT)
         return False
@@ -210,13 +188,15 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     if sheared:
         report.add(lamp.place, "sheared area lamps are drawn as parallelograms; Cycles takes them for rectangles")
     factor = Lamps.area / area if lamp_is_normalized(data) else 1.0 / math.pi
+    # The core wants them counter-clockwise seen from the side that the lamp shines to, which is -Z.
+    order = -1 if float(np.linalg.det(lamp.to_world[:3, :3])) > 0.0 else 1
     if is_round and not lamp.parts:
-        u, v = half_axes[::-1] if _turns_right(lamp.to_world) else half_axes
+        u, v = half_axes[::order]
         scene.add_disk_light(lamp.location, u, v, factor * lamp.power, spread=spread, **lamp.traits)
         return True
     for corners, power in lamp.parts or [EvenPart(UNIT_SQUARE, lamp.power)]:
-        outline = area_corners(data, lamp.to_world, corners)
-        scene.add_polygon_light(outline, factor * power, spread=spread, **lamp.traits)
+        outline = lamp.location + (2.0 * corners - 1.0) @ half_axes
+        scene.add_polygon_light(outline[::order], factor * power, spread=spread, **lamp.traits)
     return True
 
 
