@@ -78,30 +78,22 @@ def _camera_data(inputs: NodeInputs) -> Expression:
 
 
 Move = Callable[[Vector], Vector]
+# Functions from the object's frame to the world, and back, by kinds of vectors.
+OBJECT_MOVES: dict[str, tuple[Move, Move]] = {
+    "POINT": (point_to_world, point_to_object),
+    "VECTOR": (nodes.inputs.vector_to_world, vector_to_object),
+    "NORMAL": (normal_to_world, normal_to_object),
+}
 
 
-def _moves(kind: str, view: View | None) -> tuple[dict[str, Move], dict[str, Move]]:
-    """How a vector gets from each frame to the world, and from the world to each."""
+def _camera_matrices(kind: str, view: View | None) -> tuple[Array, Array]:
+    """Matrices that bring a vector of this kind from the camera's frame to the world, and back."""
     to_camera = np.eye(3, 4) if view is None else np.array(view.to_camera)
     to_world = np.linalg.inv(np.vstack([to_camera, (0.0, 0.0, 0.0, 1.0)]))[:3]
     if kind == "NORMAL":
-        return (
-            {"OBJECT": lambda v: normalize(normal_to_world(v)), "CAMERA": _unit(to_camera[:, :3].T)},
-            {"OBJECT": lambda v: normalize(normal_to_object(v)), "CAMERA": _unit(to_world[:, :3].T)},
-        )
-    if kind == "VECTOR":
-        return (
-            {"OBJECT": nodes.inputs.vector_to_world, "CAMERA": lambda v: _rows(to_world[:, :3], v)},
-            {"OBJECT": vector_to_object, "CAMERA": lambda v: _rows(to_camera[:, :3], v)},
-        )
-    return (
-        {"OBJECT": point_to_world, "CAMERA": lambda v: _rows(to_world, v)},
-        {"OBJECT": point_to_object, "CAMERA": lambda v: _rows(to_camera, v)},
-    )
-
-
-def _unit(matrix: Array) -> Move:
-    return lambda v: normalize(_rows(matrix, v))
+        return to_camera[:, :3].T, to_world[:, :3].T
+    columns = 3 if kind == "VECTOR" else 4
+    return to_world[:, :columns], to_camera[:, :columns]
 
 
 def _vector_transform(inputs: NodeInputs) -> Vector:
@@ -110,10 +102,11 @@ def _vector_transform(inputs: NodeInputs) -> Vector:
         return found
     if view is None and "CAMERA" in (node.convert_from, node.convert_to):
         inputs.remark("the camera is not known here; the world's frame is used in its place")
-    to_world, from_world = _moves(node.vector_type, view)
-    if node.convert_from != "WORLD":
-        found = to_world[node.convert_from](found)
-    return found if node.convert_to == "WORLD" else from_world[node.convert_to](found)
+    moves, matrices = OBJECT_MOVES[node.vector_type], _camera_matrices(node.vector_type, view)
+    for way, frame in enumerate((node.convert_from, node.convert_to)):
+        if frame != "WORLD":
+            found = moves[way](found) if frame == "OBJECT" else _rows(matrices[way], found)
+    return normalize(found) if node.vector_type == "NORMAL" else found
 
 
 # The direction around each axis at a place of the texture space, relative to its middle.

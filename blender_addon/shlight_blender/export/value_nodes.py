@@ -57,20 +57,17 @@ def _mix(inputs: NodeInputs) -> Value | Vector:
     if suffix is None:
         inputs.remark(f"data type {node.data_type} is not supported; 0 is used")
         return nodes.values.number(0.0)
-    uniform = node.data_type != "VECTOR" or node.factor_mode == "UNIFORM"
     a, b = (f"{letter}_{suffix}" for letter in "AB")
-    if not uniform:
-        share = inputs.vector("Factor_Vector")
-        share = Vector(*(clamp(t) for t in share)) if node.clamp_factor else share
-        first, second = inputs.vector(a), inputs.vector(b)
-        return first * (1.0 - share) + second * share
+    if node.data_type == "VECTOR" and node.factor_mode != "UNIFORM":
+        shares = inputs.vector("Factor_Vector")
+        shares = Vector(*(clamp(t) for t in shares)) if node.clamp_factor else shares
+        return inputs.vector(a) * (1.0 - shares) + inputs.vector(b) * shares
     factor = inputs.number("Factor_Float")
     factor = clamp(factor) if node.clamp_factor else factor
     if node.data_type == "RGBA":
         return _blended(inputs, inputs.color(a), inputs.color(b), factor, node.clamp_result)
-    if node.data_type == "VECTOR":
-        return inputs.vector(a) * (1.0 - factor) + inputs.vector(b) * factor
-    return (1.0 - factor) * inputs.number(a) + factor * inputs.number(b)
+    read = inputs.vector if node.data_type == "VECTOR" else inputs.number
+    return read(a) * (1.0 - factor) + read(b) * factor
 
 
 def _mix_rgb(inputs: NodeInputs) -> Color:
