@@ -132,17 +132,21 @@ class WorkerProcess:
         self._pending = b""
         # Not those of multiprocessing: Debian's Blender 3.4 crashes at its end where that module is imported.
         self._messages, other_end = (os.fdopen(end, mode, 0) for end, mode in zip(os.pipe(), ("rb", "wb"), strict=True))
-        with other_end, self._log.open("wb") as log:
-            self._process = subprocess.Popen(
-                [*command, str(folder), str(other_end.fileno())],
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                pass_fds=[other_end.fileno()],
-                # Blender reads no preferences of the user.
-                env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
-                start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
-            )
+        try:
+            with other_end, self._log.open("wb") as log:
+                self._process = subprocess.Popen(
+                    [*command, str(folder), str(other_end.fileno())],
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                    pass_fds=[other_end.fileno()],
+                    # Blender reads no preferences of the user.
+                    env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
+                    start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
+                )
+        except OSError:
+            self._messages.close()
+            raise
 
     def result(self, seconds: float = TICK_SECONDS) -> dict[str, Any] | None:
         """The figures once all are known; None after `seconds` at most, for which it waits. WorkerError if it failed.
