@@ -26,6 +26,7 @@ from shlight._core import (  # noqa: E402
     Scene,
     SceneMesh,
 )
+from shlight.bsdfs import Bsdfs  # noqa: E402
 from shlight.cameras import look_at  # noqa: E402
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
@@ -70,6 +71,7 @@ __version__ = "0.1.0"
 __all__ = [
     "DEFAULT_TOLERANCE",
     "Bsdf",
+    "Bsdfs",
     "CoefficientGradient",
     "Hits",
     "Light",

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from shlight._core import Bsdf, checked_flag, checked_integer, checked_number, converted_array
+from shlight._core import checked_flag, checked_integer, checked_number, converted_array
 
 __all__ = ["checked_flag", "checked_integer", "checked_number"]
 
@@ -39,12 +39,6 @@ def checked_callable(name: str, value: Any) -> Any:
     if not callable(value):
         raise TypeError(f"{name} must be callable, got {type(value).__name__}")
     return value
-
-
-def checked_material(bsdf: Any) -> Bsdf:
-    if not isinstance(bsdf, Bsdf):
-        raise TypeError(f"bsdf must be a Bsdf, got {type(bsdf).__name__}")
-    return bsdf
 
 
 def checked_tolerance(tolerance: Any) -> float:
@@ -121,6 +115,17 @@ def checked_disks(
     for name, array in checked.items():
         check_last(name, array, 3)
     return checked["centers"], checked["half_axes_u"], checked["half_axes_v"]
+
+
+def check_rows(name: str, good: NDArray[np.bool_] | np.bool_, wrong: str) -> None:
+    """Raises ValueError naming the argument and the first row that is not good, and what is wrong with it."""
+    if not good.all():
+        row = np.unravel_index(int(np.argmin(good)), good.shape)
+        raise ValueError(f"{name}{list(map(int, row)) if row else ''} {wrong}")
+
+
+def check_finite(name: str, array: Floats, core_axes: int = 0) -> None:
+    check_rows(name, np.isfinite(array).all(axis=tuple(range(-core_axes, 0))), "must be finite")
 
 
 def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:

@@ -24,13 +24,13 @@ _CORE_AXES = {
     "axes": 1,
     "half_angles": 0,
     "vertices": 2,
+    "bsdf": 0,
     "half_axes_u": 1,
     "half_axes_v": 1,
     "light": 1,
     "material": 1,
     "cos_theta_o": 0,
     "phi_o": 0,
-    "irradiance": 1,
     "eye": 1,
     "target": 1,
     "up": 1,
@@ -57,7 +57,7 @@ def names_rows(function: Function) -> Function:
 
 def _with_row(text: str, row: int, arguments: Mapping[str, Any]) -> str:
     shapes = {
-        name: np.shape(value)[: np.ndim(value) - _CORE_AXES[name]]
+        name: np.shape(value)[: len(np.shape(value)) - _CORE_AXES[name]]
         for name, value in arguments.items()
         if name in _CORE_AXES
     }

@@ -104,6 +104,10 @@ def lobe_table(
     entries: _Floats,
     sampling_errors: Sequence[float],
 ) -> LobeTable: ...
+def uncolored(bsdf: Bsdf) -> tuple[Bsdf, NDArray[np.float32]]: ...
+def varying_ggx(ior: float | None) -> Bsdf: ...
+
+LEAST_ROUGHNESS: float
 
 class Bsdf:
     __array_ufunc__: None
@@ -183,6 +187,8 @@ def shade_spheres(
     bsdf: Bsdf,
     cos_theta_o: _Floats,
     azimuth: _Floats,
+    colors: _Floats,
+    alphas: _Floats,
     order: int,
     tolerance: float,
     threads: int,
@@ -193,6 +199,8 @@ def shade_polygons(
     bsdf: Bsdf,
     cos_theta_o: _Floats,
     azimuth: _Floats,
+    colors: _Floats,
+    alphas: _Floats,
     order: int,
     tolerance: float,
     threads: int,
@@ -205,6 +213,8 @@ def shade_disks(
     bsdf: Bsdf,
     cos_theta_o: _Floats,
     azimuth: _Floats,
+    colors: _Floats,
+    alphas: _Floats,
     order: int,
     tolerance: float,
     threads: int,

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shlight._arrays import checked_array, given_type
-from shlight._calls import names_rows
+from shlight._arrays import check_rows, checked_array, given_type
 from shlight._core import LUMINANCE
 
 __all__ = ["LUMENS_PER_WATT", "LUMINANCE", "luminous"]
@@ -17,7 +16,6 @@ __all__ = ["LUMENS_PER_WATT", "LUMINANCE", "luminous"]
 LUMENS_PER_WATT = 683.0
 
 
-@names_rows
 def luminous(irradiance: ArrayLike) -> Any:
     """Photometric values of light in linear Rec. 709 RGB: 683 lm/W times its luminance.
 
@@ -35,6 +33,5 @@ def luminous(irradiance: ArrayLike) -> Any:
         raise ValueError(f"irradiance must be a number or have shape (..., 3), got {light.shape}")
     with np.errstate(all="ignore"):
         values = LUMENS_PER_WATT * (light @ np.asarray(LUMINANCE, dtype) if light.ndim else light)
-    if not np.isfinite(values).all():
-        raise ValueError("irradiance must be finite, and so must 683 times it", int(np.argmin(np.isfinite(values))))
+    check_rows("irradiance", np.isfinite(values), "must be finite, and so must 683 times it")
     return np.asarray(values, dtype)[()]

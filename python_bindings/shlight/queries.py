@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shlight._arrays import broadcast, check_last, checked_array, given_type
+from shlight._arrays import broadcast, check_finite, check_last, check_rows, checked_array, given_type
 
 # A tangent whose part at right angles to the normal is shorter than this, of length 1, has no direction.
 _LEAST_TANGENT = 1e-6
@@ -74,7 +74,7 @@ def shading_frames(normals: ArrayLike, tangents: ArrayLike | None = None) -> Flo
         broadcast(normals=z.shape[:-1], tangents=tangent.shape[:-1])
         x = tangent - np.sum(tangent * z, axis=-1, keepdims=True) * z
         length = np.linalg.norm(x, axis=-1, keepdims=True)
-        _check_rows("tangents", length[..., 0] > _LEAST_TANGENT, "is parallel to its normal")
+        check_rows("tangents", length[..., 0] > _LEAST_TANGENT, "is parallel to its normal")
         x /= length
     x, z = np.broadcast_arrays(x, z)
     return np.stack([x, np.cross(z, x), z], axis=-1).astype(kind, copy=False)
@@ -94,14 +94,8 @@ def _turned_x(z: Floats) -> Floats:
 def _units(name: str, value: ArrayLike) -> Floats:
     vectors = checked_array(name, value, np.float64, core_axes=1)
     check_last(name, vectors, 3)
-    _check_rows(name, np.isfinite(vectors).all(axis=-1), "contains a number that is not finite")
+    check_finite(name, vectors, core_axes=1)
     largest = np.abs(vectors).max(axis=-1, keepdims=True, initial=0)
-    _check_rows(name, largest[..., 0] > 0, "has length 0")
+    check_rows(name, largest[..., 0] > 0, "has length 0")
     scaled = vectors / largest
     return scaled / np.linalg.norm(scaled, axis=-1, keepdims=True)
-
-
-def _check_rows(name: str, good: NDArray[np.bool_], wrong: str) -> None:
-    if not good.all():
-        row = np.unravel_index(int(np.argmin(good)), good.shape)
-        raise ValueError(f"{name}{list(map(int, row)) if row else ''} {wrong}")

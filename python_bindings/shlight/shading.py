@@ -17,11 +17,11 @@ from shlight import _core
 from shlight._arrays import (
     Floats,
     broadcast,
+    check_finite,
     check_last,
     checked_array,
     checked_disks,
     checked_flag,
-    checked_material,
     checked_name,
     checked_order,
     checked_threads,
@@ -30,14 +30,17 @@ from shlight._arrays import (
     rows,
 )
 from shlight._calls import names_rows
-from shlight._core import DEFAULT_TOLERANCE
+from shlight._core import DEFAULT_TOLERANCE, Bsdf
 from shlight._methods import is_own, refuse_options, shading_function
+from shlight.bsdfs import Bsdfs, lobes_of_rows
 from shlight.gradients import PolygonGradient, SphereGradient
 
 _MAX_AXES = 32  # of numpy's arrays before its version 2
 
 Radiance = NDArray[np.float32]
 Effort = NDArray[np.int32]
+_NO_COLORS, _NO_ALPHAS = np.zeros((0, 0, 3), np.float32), np.zeros((0, 0), np.float32)
+
 Sampling = Literal["solid_angle", "area", "bsdf", "mis"]
 
 
@@ -63,7 +66,7 @@ class _MethodSettings(_Settings, total=False):
 def shade_spheres(
     centers: ArrayLike,
     radii: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
@@ -74,7 +77,7 @@ def shade_spheres(
 def shade_spheres(
     centers: ArrayLike,
     radii: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
@@ -85,7 +88,7 @@ def shade_spheres(
 def shade_spheres(
     centers: ArrayLike,
     radii: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
@@ -96,7 +99,7 @@ def shade_spheres(
 def shade_spheres(
     centers: ArrayLike,
     radii: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
@@ -107,7 +110,7 @@ def shade_spheres(
 def shade_spheres(
     centers: ArrayLike,
     radii: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     phi_o: ArrayLike | None = None,
@@ -124,6 +127,7 @@ def shade_spheres(
     """Radiance reflected of sphere lights of unit radiance towards ω_o = (sinθ_o, 0, cosθ_o), clipped by the horizon.
 
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
+    bsdf: one material, or Bsdfs, whose leading axes broadcast with those of the lights; method must then be "auto".
     cos_theta_o: (...), in [0, 1]. Leading axes broadcast; lights that share a view should be neighbours along the last.
     phi_o: (...), azimuth of the view [rad] in the frame of the lights, whose x is then the surface's tangent:
     ω_o = (sinθ_o cosφ_o, sinθ_o sinφ_o, cosθ_o); None: 0. Only anisotropic materials reflect another radiance for
@@ -139,8 +143,8 @@ def shade_spheres(
     the tolerance of the radiance returned. Those of mirrors are 0; method and order must then be "auto". With gradient
     "places" those by roughness are left out, which take most of the time.
     """
-    bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
-    derived = _checked_gradient(gradient, order, method)
+    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
+    derived = _checked_gradient(gradient, bsdf, order, method)
     own = is_own("auto", method)
     dtype = given_type(centers, radii) if own else np.float64
     c = checked_array("centers", centers, dtype, core_axes=1)
@@ -148,15 +152,16 @@ def shade_spheres(
     cosines = _checked_views(cos_theta_o)
     check_last("centers", c, 3)
     phi = _checked_azimuths(phi_o, bsdf, method)
-    shapes = {"centers": c.shape[:-1], "radii": r.shape, "cos_theta_o": cosines.shape, "phi_o": phi.shape}
+    views = {"bsdf": _shape(bsdf), "cos_theta_o": cosines.shape, "phi_o": phi.shape}
+    shapes = {"centers": c.shape[:-1], "radii": r.shape, **views}
     shape = _broadcast_with(2 if derived else 0, shapes)
     c = _seen_by(phi, c)
     if own:
         refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
         settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-        views = _views(cosines, phi, bsdf, shape)
+        seen = _material_and_views(bsdf, cosines, phi, shape)
         spheres, radius = rows(c, shape, 3), rows(r, shape)
-        flat = _core.shade_spheres(spheres, radius, bsdf, views[0], views[1], *settings, wanted)
+        flat = _core.shade_spheres(spheres, radius, *seen, *settings, wanted)
     else:
         lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
         options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
@@ -165,7 +170,7 @@ def shade_spheres(
     if not derived:
         return _result(*flat, shape, wanted)
     center, size, rough = _core.shade_spheres_gradient(
-        spheres, radius, bsdf, *views, derived == "all", checked_threads(threads)
+        spheres, radius, *seen[:3], derived == "all", checked_threads(threads)
     )
     moved = _seen_by(-phi[..., None], center.reshape(*shape, 3, 3))
     made = SphereGradient(moved, size.reshape(*shape, 3), rough.reshape(*shape, rough.shape[-1]))
@@ -175,7 +180,7 @@ def shade_spheres(
 @overload
 def shade_polygons(
     vertices: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
@@ -185,7 +190,7 @@ def shade_polygons(
 @overload
 def shade_polygons(
     vertices: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
@@ -195,7 +200,7 @@ def shade_polygons(
 @overload
 def shade_polygons(
     vertices: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
@@ -205,7 +210,7 @@ def shade_polygons(
 @overload
 def shade_polygons(
     vertices: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
@@ -215,7 +220,7 @@ def shade_polygons(
 @names_rows
 def shade_polygons(
     vertices: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     phi_o: ArrayLike | None = None,
@@ -235,8 +240,8 @@ def shade_polygons(
     or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
     gradient: a PolygonGradient, of the region within the outline; moved vertices need not stay in one plane.
     """
-    bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
-    derived = _checked_gradient(gradient, order, method)
+    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
+    derived = _checked_gradient(gradient, bsdf, order, method)
     own = is_own("auto", method)
     dtype = given_type(vertices) if own else np.float64
     v = checked_array("vertices", vertices, dtype, core_axes=2)
@@ -245,15 +250,15 @@ def shade_polygons(
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     cosines = _checked_views(cos_theta_o)
     phi = _checked_azimuths(phi_o, bsdf, method)
-    shapes = {"vertices": v.shape[:-2], "cos_theta_o": cosines.shape, "phi_o": phi.shape}
+    shapes = {"vertices": v.shape[:-2], "bsdf": _shape(bsdf), "cos_theta_o": cosines.shape, "phi_o": phi.shape}
     shape = _broadcast_with(3 if derived else 0, shapes)
     v = _seen_by(phi[..., None], v)
     polygons = rows(v, shape, *v.shape[-2:])
     if own:
         refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
         settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-        views = _views(cosines, phi, bsdf, shape)
-        flat = _core.shade_polygons(polygons, bsdf, views[0], views[1], *settings, wanted)
+        seen = _material_and_views(bsdf, cosines, phi, shape)
+        flat = _core.shade_polygons(polygons, *seen, *settings, wanted)
     else:
         lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
         options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
@@ -261,7 +266,7 @@ def shade_polygons(
         flat = shade(*lights, checked_threads(threads))
     if not derived:
         return _result(*flat, shape, wanted)
-    moved, rough = _core.shade_polygons_gradient(polygons, bsdf, *views, derived == "all", checked_threads(threads))
+    moved, rough = _core.shade_polygons_gradient(polygons, *seen[:3], derived == "all", checked_threads(threads))
     moved = _seen_by(-phi[..., None, None], moved.reshape(*shape, 3, *v.shape[-2:]))
     made = PolygonGradient(moved, rough.reshape(*shape, rough.shape[-1]))
     return (*_parts(_result(*flat, shape, wanted)), made)
@@ -272,7 +277,7 @@ def shade_disks(
     centers: ArrayLike,
     half_axes_u: ArrayLike,
     half_axes_v: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[False] = ...,
@@ -283,7 +288,7 @@ def shade_disks(
     centers: ArrayLike,
     half_axes_u: ArrayLike,
     half_axes_v: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     return_effort: Literal[True],
@@ -294,7 +299,7 @@ def shade_disks(
     centers: ArrayLike,
     half_axes_u: ArrayLike,
     half_axes_v: ArrayLike,
-    bsdf: _core.Bsdf,
+    bsdf: Bsdf | Bsdfs,
     cos_theta_o: ArrayLike,
     *,
     phi_o: ArrayLike | None = None,
@@ -312,7 +317,7 @@ def shade_disks(
     L_00, or the tolerance if that is less (docs/theory.md, 5.5).
     method: "auto" only; the others know no disks.
     """
-    bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
+    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
     checked_name("method", method, ("auto",))
     dtype = given_type(centers, half_axes_u, half_axes_v)
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
@@ -322,13 +327,14 @@ def shade_disks(
         centers=c.shape[:-1],
         half_axes_u=u.shape[:-1],
         half_axes_v=v.shape[:-1],
+        bsdf=_shape(bsdf),
         cos_theta_o=cosines.shape,
         phi_o=phi.shape,
     )
-    lights = (rows(_seen_by(phi, c), shape, 3), rows(_seen_by(phi, u), shape, 3), rows(_seen_by(phi, v), shape, 3))
-    views = _views(cosines, phi, bsdf, shape)
+    center, half_u, half_v = (rows(_seen_by(phi, own), shape, 3) for own in (c, u, v))
+    seen = _material_and_views(bsdf, cosines, phi, shape)
     settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-    flat = _core.shade_disks(*lights, bsdf, views[0], views[1], *settings, wanted)
+    flat = _core.shade_disks(center, half_u, half_v, *seen, *settings, wanted)
     return _result(*flat, shape, wanted)
 
 
@@ -336,12 +342,23 @@ def _checked_views(cos_theta_o: ArrayLike) -> Floats:
     return checked_array("cos_theta_o", cos_theta_o, np.float64)
 
 
-def _checked_azimuths(phi_o: ArrayLike | None, bsdf: _core.Bsdf, method: str) -> Floats:
+def _checked_material(bsdf: Any) -> Bsdf | Bsdfs:
+    if not isinstance(bsdf, Bsdf | Bsdfs):
+        raise TypeError(f"bsdf must be a Bsdf or Bsdfs, got {type(bsdf).__name__}")
+    return bsdf
+
+
+def _shape(bsdf: Bsdf | Bsdfs) -> tuple[int, ...]:
+    return bsdf.shape if isinstance(bsdf, Bsdfs) else ()
+
+
+def _checked_azimuths(phi_o: ArrayLike | None, bsdf: Bsdf | Bsdfs, method: str) -> Floats:
+    if isinstance(bsdf, Bsdfs) and method != "auto":
+        raise ValueError(f"method must be 'auto' for Bsdfs, got {method!r}")
     if bsdf.is_anisotropic and method != "auto":
         raise ValueError(f"method must be 'auto' for an anisotropic bsdf, got {method!r}")
     phi = np.zeros(()) if phi_o is None else checked_array("phi_o", phi_o, np.float64)
-    if not np.isfinite(phi).all():
-        raise ValueError("phi_o must be finite")
+    check_finite("phi_o", phi)
     return phi
 
 
@@ -356,10 +373,16 @@ def _seen_by(phi: Floats, vectors: Floats) -> Floats:
     return np.stack(turned, axis=-1).astype(vectors.dtype)
 
 
-def _views(cosines: Floats, phi: Floats, bsdf: _core.Bsdf, shape: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Cosines and azimuths, one for each light, or one for all of them."""
+def _material_and_views(
+    bsdf: Bsdf | Bsdfs, cosines: Floats, phi: Floats, shape: tuple[int, ...]
+) -> tuple[Bsdf, Floats, Floats, Floats, Floats]:
+    """Lobes, cosines and azimuths of views, one for each light or one for all, and what Bsdfs have for each light."""
     known = phi if bsdf.is_anisotropic else np.zeros(())
-    return _one_or_all(cosines, shape), _one_or_all(known, shape)
+    views = _one_or_all(cosines, shape), _one_or_all(known, shape)
+    if isinstance(bsdf, Bsdf):
+        return bsdf, *views, _NO_COLORS, _NO_ALPHAS
+    lobes, colors, alphas = lobes_of_rows(bsdf, shape)
+    return lobes, *views, colors, alphas
 
 
 def _one_or_all(values: Floats, shape: tuple[int, ...]) -> Floats:
@@ -379,11 +402,13 @@ def _broadcast_with(added: int, shapes: dict[str, tuple[int, ...]]) -> tuple[int
 
 
 def _checked_gradient(
-    gradient: bool | Literal["places"], order: int | Literal["auto"], method: str
+    gradient: bool | Literal["places"], bsdf: Bsdf | Bsdfs, order: int | Literal["auto"], method: str
 ) -> Literal["", "places", "all"]:
     """Which derivatives are wanted."""
     if not isinstance(gradient, str) and not checked_flag("gradient", gradient):
         return ""
+    if isinstance(bsdf, Bsdfs):
+        raise ValueError("bsdf must be one Bsdf with gradient, got Bsdfs")
     for name, value in (("order", order), ("method", method)):
         if not (isinstance(value, str) and value == "auto"):
             raise ValueError(f"{name} must be 'auto' with gradient")

@@ -237,13 +237,19 @@ py::object lambert(const py::object& albedo) {
                                  : py::cast(Bsdf::lambert(color_from("albedo", albedo)));
 }
 
+/// None: 0.
+double ior_from(const py::object& ior) {
+    const double index = ior.is_none() ? 0 : real_from("ior", ior);
+    if (!ior.is_none() && !(index > 1)) {
+        throw std::invalid_argument("ior must be finite and greater than 1");
+    }
+    return index;
+}
+
 Bsdf constant_ggx(const py::object& roughness, const py::object& f0, const py::object& ior) {
     const auto width = static_cast<float>(real_from("roughness", roughness));
     const Rgb head_on = color_from("f0", f0);
-    const double index = ior.is_none() ? 0 : real_from("ior", ior);
-    if (!ior.is_none() && !(index > 1)) {  // 0 stands for None
-        throw std::invalid_argument("ior must be finite and greater than 1");
-    }
+    const double index = ior_from(ior);
     const py::gil_scoped_release release;
     return Bsdf::ggx(width, head_on, index);
 }
@@ -286,11 +292,15 @@ std::string repr(const Bsdf& bsdf) {
 
 using GgxState = std::tuple<double, int, double>;                     // alpha, Fresnel, ior
 using TableState = std::tuple<std::shared_ptr<LobeTable>, int, int>;  // table, channel, order
-using ShapeState = std::variant<std::monostate, GgxState, TableState>;
+using VaryingState = std::tuple<int, double>;                         // Fresnel, ior
+using ShapeState = std::variant<std::monostate, GgxState, TableState, VaryingState>;
 using LobeState = std::tuple<ShapeState, std::array<float, 3>, std::optional<std::vector<float>>>;
 
 ShapeState shape_state_of(const Lobe& lobe) {
     if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape)) {
+        if (lobe.varying_width != 0) {
+            return VaryingState{static_cast<int>(ggx->fresnel), ggx->ior};
+        }
         return GgxState{ggx->alpha, static_cast<int>(ggx->fresnel), ggx->ior};
     }
     if (const auto* table = std::get_if<TableShape>(&lobe.shape)) {
@@ -320,7 +330,9 @@ LobeShape shape_from(const ShapeState& state) {
         }
         return TableShape{table, channel};
     }
-    const auto [alpha, fresnel, ior] = std::get<GgxState>(state);
+    const auto* of_points = std::get_if<VaryingState>(&state);
+    const auto [alpha, fresnel, ior] =
+        of_points != nullptr ? std::tuple_cat(std::tuple(1.0), *of_points) : std::get<GgxState>(state);
     if (!(alpha >= 0 && alpha <= 1 && ior > 1 && std::isfinite(ior)) || fresnel < static_cast<int>(Fresnel::one) ||
         fresnel > static_cast<int>(Fresnel::dielectric)) {
         throw std::invalid_argument("state does not describe a lobe");
@@ -331,6 +343,10 @@ LobeShape shape_from(const ShapeState& state) {
 Bsdf bsdf_from(const std::vector<LobeState>& state) {
     Bsdf sum;
     for (const auto& [shape, color, nodes] : state) {
+        if (std::holds_alternative<VaryingState>(shape)) {
+            sum = sum + Bsdf::varying(std::get<GgxShape>(shape_from(shape)));
+            continue;
+        }
         const auto* of_table = std::get_if<TableState>(&shape);
         sum = sum + Bsdf::lobe(shape_from(shape), {color[0], color[1], color[2]},
                                nodes ? std::make_shared<const ViewWeight>(*nodes) : nullptr,
@@ -394,9 +410,26 @@ constexpr const char* kPrincipledDoc =
 
 A Shader: Blender's Principled BSDF, see shlight.nodes.principled.)";
 
+/// The lobes that are not black with colour 1, and their colours (lobes, 3).
+std::pair<Bsdf, Array<float>> uncolored(const Bsdf& bsdf) {
+    std::vector<Rgb> colors;
+    for (const Lobe& lobe : bsdf.lobes()) {
+        if (lobe.color != Rgb(0)) {
+            colors.push_back(lobe.color);
+        }
+    }
+    Array<float> array({static_cast<py::ssize_t>(colors.size()), py::ssize_t{3}});
+    std::copy(colors.begin(), colors.end(), reinterpret_cast<Rgb*>(array.mutable_data()));
+    return {bsdf.uncolored(), array};
+}
+
 }  // namespace
 
 void bind_bsdf(py::module_& m) {
+    m.def("uncolored", &uncolored, py::arg("bsdf"));
+    m.def(
+        "varying_ggx", [](const py::object& ior) { return Bsdf::varying_ggx(ior_from(ior)); }, py::arg("ior"));
+    m.attr("LEAST_ROUGHNESS") = kLeastRoughness;
     py::class_<Bsdf> type(m, "Bsdf", kDoc, without_constructor());
     define_pickling(type, &state_of, &bsdf_from);
     {

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 import shlight
-from shlight import Bsdf, images, nodes
+from shlight import Bsdf, Bsdfs, images, nodes
 from shlight_tools import methods
 
 TRIANGLE = [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, -1.0, 1.0]]
@@ -196,6 +196,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.evaluate": (GGX.evaluate, {"wi": [0.0, 0.6, 0.8], "wo": [0.0, 0.0, 1.0]}),
     "Bsdf.__mul__": (GGX.__mul__, {"factor": 0.5}),
     "Bsdf.__rmul__": (GGX.__rmul__, {"factor": 0.5}),
+    "Bsdfs.lambert": (Bsdfs.lambert, {"albedo": [RGB, RGB]}),
+    "Bsdfs.ggx": (Bsdfs.ggx, {"roughness": [0.2, 0.5], "f0": [[0.5] * 3] * 2, "ior": 1.5}),
+    "Bsdfs.__mul__": (Bsdfs.lambert(0.5).__mul__, {"factor": [RGB, RGB]}),
+    "Bsdfs.__rmul__": (Bsdfs.lambert(0.5).__rmul__, {"factor": 0.5}),
     **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),

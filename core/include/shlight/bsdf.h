@@ -65,6 +65,11 @@ class Bsdf {
     /// is 0 there, as in Cycles. alpha = roughness²; below kLeastRoughness the lobe is a perfect mirror.
     /// Throws for roughness outside [0, 1], f0 outside [0, kLargestColor], or an ior that is not finite and above 1.
     static Bsdf ggx(float roughness, const Rgb& f0, double ior = 0);
+    /// The lobes of ggx() with colour 1, of widths that LightShader is given for each light; the second one, the rise
+    /// from f0, is missing above the ior at which the curve is flat. Throws for the ior as ggx() does.
+    static Bsdf varying_ggx(double ior = 0);
+    /// One of them.
+    static Bsdf varying(const GgxShape& shape);
     /// The channels of a table, RGB or grey, as lobes. order: as of lobe().
     static Bsdf table(const std::shared_ptr<const LobeTable>& table, int order = 0);
     /// top + base · (1 - max over RGB of top's directional albedo).
@@ -73,6 +78,9 @@ class Bsdf {
     Bsdf operator+(const Bsdf& other) const;
     /// Multiplies all colours. Throws if the factor or a product is outside [0, kLargestColor].
     Bsdf scaled(const Rgb& factor) const;
+
+    /// The lobes that are not black, with colour 1.
+    Bsdf uncolored() const;
 
     const std::vector<Lobe>& lobes() const { return lobes_; }
     /// Whether the azimuth of the view from the surface's tangent on matters.

@@ -54,14 +54,15 @@ class LightShaderWork {
     /// Checks what is given of `count` lights, and calls shade_chunk(first, radiance, effort) for each chunk, after its
     /// views were found.
     template <class Shade>
-    void in_chunks(std::size_t count, const LightViews& views, Radiance radiance, Effort effort,
+    void in_chunks(std::size_t count, const LightViews& views, const LightLobes& own, Radiance radiance, Effort effort,
                    const Shade& shade_chunk) {
         check_views(views, count);
+        check_lobes(own, count);
         check_size("radiance", radiance.size(), count);
         check_size("effort", effort.size(), effort.empty() ? 0 : count);
         for (std::size_t first = 0; first < count; first += kLightsPerChunk) {
             const std::size_t size = std::min(kLightsPerChunk, count - first);
-            find_views(views, first, size);
+            find_views(views, own, first, size);
             shade_chunk(first, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
         }
     }
@@ -90,38 +91,76 @@ class LightShaderWork {
     }
 
   private:
+    void check_lobes(const LightLobes& own, std::size_t count) const {
+        const std::size_t all = count * material_.lobes().size();
+        check_size("colors", own.colors.size(), own.colors.empty() ? 0 : all);
+        const bool varies = std::any_of(material_.lobes().begin(), material_.lobes().end(),
+                                        [](const Lobe& lobe) { return lobe.varying_width != 0; });
+        check_size("alphas", own.alphas.size(), varies || !own.alphas.empty() ? all : 0);
+    }
+
     /// Each change from light to light is a new view.
-    void find_views(const LightViews& views, std::size_t first, std::size_t count) {
+    void find_views(const LightViews& views, const LightLobes& own, std::size_t first, std::size_t count) {
         view_of_.assign(count, 0);
         cosines_.assign(1, views.cosine_of(first));
         azimuths_.assign(1, views.azimuth_of(first));
-        if (!views.shared()) {
+        lights_.assign(1, first);
+        if (!views.shared() || !own.empty()) {
             cosines_.resize(count);
             azimuths_.resize(count);
+            lights_.resize(count);
             std::uint32_t view = 0;
             for (std::size_t i = 1; i < count; ++i) {
                 const double cosine = views.cosine_of(first + i);
                 const double azimuth = views.azimuth_of(first + i);
-                view += cosine != cosines_[view] || azimuth != azimuths_[view] ? 1 : 0;
+                view += cosine != cosines_[view] || azimuth != azimuths_[view] || changes(own, first + i) ? 1 : 0;
                 cosines_[view] = cosine;
                 azimuths_[view] = azimuth;
+                lights_[view] = first + i;
                 view_of_[i] = view;
             }
             cosines_.resize(view + std::size_t{1});
             azimuths_.resize(cosines_.size());
+            lights_.resize(cosines_.size());
         }
-        views_.assign(material_, cosines_, material_.weights(cosines_, weights_), parameters(), false);
+        views_.assign(material_, cosines_, weights(own.colors), parameters(own.alphas), false);
     }
 
-    /// The azimuth of each view, for each lobe.
-    LobeParameters parameters() {
-        parameters_.clear();
-        if (material_.varies()) {
-            for (const double azimuth : azimuths_) {
-                parameters_.insert(parameters_.end(), material_.lobes().size(), static_cast<float>(azimuth));
+    /// Whether a light's lobes differ from those of the one before.
+    bool changes(const LightLobes& own, std::size_t light) const {
+        const std::size_t lobes = material_.lobes().size();
+        const auto differ = [&](const auto& numbers) {
+            const auto last = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.empty() ? 0 : light * lobes);
+            return !numbers.empty() && !std::equal(last - static_cast<std::ptrdiff_t>(lobes), last, last);
+        };
+        return differ(own.colors) || differ(own.alphas);
+    }
+
+    LobeWeights weights(std::span<const Rgb> colors) {
+        if (colors.empty()) {
+            return material_.weights(cosines_, weights_);
+        }
+        weights_.clear();
+        for (std::size_t view = 0; view < lights_.size(); ++view) {
+            for (std::size_t i = 0; i < material_.lobes().size(); ++i) {
+                weights_.push_back(material_.lobes()[i].scale(static_cast<float>(cosines_[view])) *
+                                   colors[lights_[view] * material_.lobes().size() + i]);
             }
         }
-        return {parameters_, material_.lobes().size()};
+        return {weights_, material_.lobes().size()};
+    }
+
+    /// The azimuth or the width of each view, for each lobe.
+    LobeParameters parameters(std::span<const float> alphas) {
+        parameters_.clear();
+        const std::span<const Lobe> lobes = material_.lobes();
+        for (std::size_t view = 0; view < lights_.size() && material_.varies(); ++view) {
+            for (std::size_t i = 0; i < lobes.size(); ++i) {
+                parameters_.push_back(lobes[i].varying_width != 0 ? alphas[lights_[view] * lobes.size() + i]
+                                                                  : static_cast<float>(azimuths_[view]));
+            }
+        }
+        return {parameters_, lobes.size()};
     }
 
     /// Shades the lights in seen_.
@@ -166,6 +205,7 @@ class LightShaderWork {
     MaterialViews views_;
     LobeIntegrator batch_;
     std::vector<double> cosines_, azimuths_;
+    std::vector<std::size_t> lights_;  // one that each view belongs to
     std::vector<float> parameters_;
     std::vector<Rgb> weights_;  // of the lobes at each view, or at all
     std::vector<std::uint32_t> view_of_;
@@ -180,22 +220,23 @@ LightShader& LightShader::operator=(LightShader&&) noexcept = default;
 
 template <class T>
 void LightShader::spheres(In<Vec3<T>> centers, In<T> radii, In<double> cos_theta_o, Radiance radiance, Effort effort,
-                          In<double> azimuth) {
+                          In<double> azimuth, const LightLobes& own) {
     check_size("radii", radii.size(), centers.size());
-    work_->in_chunks(
-        centers.size(), {cos_theta_o, azimuth}, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
-            work_->shade_spheres(centers.subspan(first, sums.size()), radii.subspan(first, sums.size()), sums, most);
-        });
+    work_->in_chunks(centers.size(), {cos_theta_o, azimuth}, own, radiance, effort,
+                     [&](std::size_t first, Radiance sums, Effort most) {
+                         work_->shade_spheres(centers.subspan(first, sums.size()), radii.subspan(first, sums.size()),
+                                              sums, most);
+                     });
 }
 
 template <class T>
 void LightShader::polygons(In<Vec3<T>> vertices, int vertex_count, In<double> cos_theta_o, Radiance radiance,
-                           Effort effort, In<double> azimuth) {
+                           Effort effort, In<double> azimuth, const LightLobes& own) {
     check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);
-    work_->in_chunks(count, {cos_theta_o, azimuth}, radiance, effort,
+    work_->in_chunks(count, {cos_theta_o, azimuth}, own, radiance, effort,
                      [&](std::size_t first, Radiance sums, Effort most) {
                          work_->shade_polygons(vertices.subspan(first * k, sums.size() * k), k, sums, most);
                      });
@@ -203,7 +244,7 @@ void LightShader::polygons(In<Vec3<T>> vertices, int vertex_count, In<double> co
 
 template <class T>
 void LightShader::disks(In<Vec3<T>> centers, In<Vec3<T>> half_axes_u, In<Vec3<T>> half_axes_v, In<double> cos_theta_o,
-                        Radiance radiance, Effort effort, In<double> azimuth) {
+                        Radiance radiance, Effort effort, In<double> azimuth, const LightLobes& own) {
     const std::size_t count = centers.size();
     check_size("half_axes_u", half_axes_u.size(), count);
     check_size("half_axes_v", half_axes_v.size(), count);
@@ -212,7 +253,7 @@ void LightShader::disks(In<Vec3<T>> centers, In<Vec3<T>> half_axes_u, In<Vec3<T>
                    std::numeric_limits<T>::epsilon());
     }
     work_->in_chunks(
-        count, {cos_theta_o, azimuth}, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
+        count, {cos_theta_o, azimuth}, own, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
             const auto disk = [&](std::size_t i) {
                 return Ellipse{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]), Vec3d(half_axes_v[first + i])};
             };
@@ -220,13 +261,15 @@ void LightShader::disks(In<Vec3<T>> centers, In<Vec3<T>> half_axes_u, In<Vec3<T>
         });
 }
 
-template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort, In<double>);
-template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort, In<double>);
-template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort, In<double>);
-template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort, In<double>);
+template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort, In<double>,
+                                   const LightLobes&);
+template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort, In<double>,
+                                   const LightLobes&);
+template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort, In<double>, const LightLobes&);
+template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort, In<double>, const LightLobes&);
 template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<double>, Radiance, Effort,
-                                 In<double>);
+                                 In<double>, const LightLobes&);
 template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<double>, Radiance, Effort,
-                                 In<double>);
+                                 In<double>, const LightLobes&);
 
 }  // namespace shlight

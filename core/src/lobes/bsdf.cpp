@@ -30,12 +30,18 @@ bool is_black(const Rgb& c) {
     return c == Rgb(0);
 }
 
+void check_ior(double ior) {
+    if (ior != 0 && !(std::isfinite(ior) && ior > 1)) {
+        reject("ior must be finite and greater than 1");
+    }
+}
+
 /// For an ior near 1 the dielectric Fresnel curve becomes a step at grazing angles, and for a large ior it is flat.
 /// Beyond these limits it differs by more than 1e-2 from its replacement only where cosθ_d < 3e-3.
 constexpr double kLeastIor = 1 + 1e-6, kLargestIor = 100;
 
 /// The lobe with the Fresnel factor's rise from 0 at normal incidence to 1. ior: 0 for Schlick's curve.
-LobeShape edge_shape(double alpha, double ior) {
+GgxShape edge_shape(double alpha, double ior) {
     return ior == 0 ? GgxShape{alpha, Fresnel::schlick}
                     : GgxShape{alpha, Fresnel::dielectric, std::max(ior, kLeastIor)};
 }
@@ -75,9 +81,7 @@ Bsdf Bsdf::ggx(float roughness, const Rgb& f0, double ior) {
         reject("roughness must lie in [0, 1]");
     }
     check_color("f0", f0);
-    if (ior != 0 && !(std::isfinite(ior) && ior > 1)) {
-        reject("ior must be finite and greater than 1");
-    }
+    check_ior(ior);
     const double alpha = roughness < kLeastRoughness ? 0 : static_cast<double>(roughness) * roughness;
     Bsdf b;
     if (!is_black(f0)) {
@@ -88,6 +92,18 @@ Bsdf Bsdf::ggx(float roughness, const Rgb& f0, double ior) {
         b = b + lobe(edge_shape(alpha, ior), rest);
     }
     return b;
+}
+
+Bsdf Bsdf::varying(const GgxShape& shape) {
+    Bsdf b;
+    b.lobes_.push_back({shape, nullptr, Rgb(1), nullptr, 1});
+    return b;
+}
+
+Bsdf Bsdf::varying_ggx(double ior) {
+    check_ior(ior);
+    const Bsdf head_on = varying({1, Fresnel::one});
+    return ior <= kLargestIor ? head_on + varying(edge_shape(1, ior)) : head_on;
 }
 
 Bsdf Bsdf::table(const std::shared_ptr<const LobeTable>& table, int order) {
@@ -134,6 +150,15 @@ Bsdf Bsdf::scaled(const Rgb& factor) const {
     for (Lobe& lobe : result.lobes_) {
         lobe.color *= factor;
         check_color("factor times the material's own colour", lobe.color);
+    }
+    return result;
+}
+
+Bsdf Bsdf::uncolored() const {
+    Bsdf result = *this;
+    std::erase_if(result.lobes_, [](const Lobe& lobe) { return is_black(lobe.color); });
+    for (Lobe& lobe : result.lobes_) {
+        lobe.color = Rgb(1);
     }
     return result;
 }
