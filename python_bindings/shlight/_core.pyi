@@ -433,10 +433,13 @@ class Scene:
         normals: ArrayLike,
         *,
         rays: int = 64,
+        max_bounces: int = 0,
+        bounce_rays: int = 256,
         return_error: Literal[False] = False,
         transparent_bounces: int = 8,
         threads: int = 0,
         seed: int = 0,
+        progress: Callable[[float], object] | None = None,
     ) -> _Floats: ...
     @overload
     def irradiance(
@@ -445,11 +448,15 @@ class Scene:
         normals: ArrayLike,
         *,
         rays: int = 64,
+        max_bounces: int = 0,
+        bounce_rays: int = 256,
         return_error: Literal[True],
         transparent_bounces: int = 8,
         threads: int = 0,
         seed: int = 0,
+        progress: Callable[[float], object] | None = None,
     ) -> tuple[_Floats, _Floats]: ...
+    @overload
     def light_coefficients(
         self,
         points: ArrayLike,
@@ -459,10 +466,32 @@ class Scene:
         tangents: ArrayLike | None = None,
         shadows: bool = True,
         rays: int = 64,
+        max_bounces: int = 0,
+        bounce_rays: int = 256,
+        return_error: Literal[False] = False,
         transparent_bounces: int = 8,
         threads: int = 0,
         seed: int = 0,
+        progress: Callable[[float], object] | None = None,
     ) -> _Floats: ...
+    @overload
+    def light_coefficients(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike,
+        order: int,
+        *,
+        tangents: ArrayLike | None = None,
+        shadows: bool = True,
+        rays: int = 64,
+        max_bounces: int = 0,
+        bounce_rays: int = 256,
+        return_error: Literal[True],
+        transparent_bounces: int = 8,
+        threads: int = 0,
+        seed: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
     def radiance(
         self,
         origins: ArrayLike,
@@ -482,6 +511,7 @@ class Scene:
         transmission_bounces: int | None = None,
         threads: int = 0,
         seed: int = 0,
+        progress: Callable[[float], object] | None = None,
     ) -> _Floats: ...
     def set_camera(self, to_world: ArrayLike, fov_x: float, **lens: Unpack[_Lens]) -> None: ...
     def set_camera_window(

@@ -95,13 +95,19 @@ inline void check_signals() {
 class SignalWatch {
   public:
     void look() {
-        if (std::this_thread::get_id() != caller_) {
-            return;
-        }
-        if (const Clock::time_point now = Clock::now(); now - last_ >= kBetweenLooks) {
-            last_ = now;
+        if (is_due()) {
             check_signals();
         }
+    }
+    /// Whether the thread that called asks, and did not just before.
+    bool is_due() {
+        if (std::this_thread::get_id() != caller_) {
+            return false;
+        }
+        const Clock::time_point now = Clock::now();
+        const bool is_late = now - last_ >= kBetweenLooks;
+        last_ = is_late ? now : last_;
+        return is_late;
     }
 
   private:

@@ -45,27 +45,31 @@ max_bounces: surfaces that light is reflected by before the one that the ray mee
     by drawn paths alone and takes many of them, where shlight.render makes records.
 order, tolerance, shadows, shadow_rays, transparent_bounces, glossy_bounces, transmission_bounces, seed: see shlight.render.
 threads: at most; 0: all cores. The result does not depend on it.
+progress: is called with the finished share, 0 ... 1, about every 20 ms; returning False cancels.
 
 Returns (n, 3), RGB [W m^-2 sr^-1]; 0 where a ray meets nothing and the environment is not visible. float32 if both
 arrays are, otherwise float64; its precision is that of float32.
-Raises ValueError naming the argument and its row.)";
+Raises ValueError naming the argument and its row, and RenderCancelled.)";
 
-constexpr const char* kIrradianceDoc = R"(Find the direct light that falls on a surface at each point, with shadows.
+constexpr const char* kIrradianceDoc = R"(Find the light that falls on a surface at each point, with shadows.
 
 points, normals: (n, 3), or (3,), which goes with all of the other; normals of any length > 0. Light counts from the side
     of the normal, as a diffuse surface there gets it; lights with diffuse=False do not count, the environment does.
 rays: shadow rays of a point for each light, 0 ... 16384; brighter ones get up to twice as many, dim ones fewer, and a
     light one where rays from points nearby agree about it. 0: no shadows.
-return_error: return (irradiance, error), error (n, 3) being the standard deviation that shadow rays leave. It is
-    estimated from the rays as if the edge of one shadow crossed each light.
+max_bounces: surfaces that light is reflected by before it falls on the point, at most; 0: direct light.
+bounce_rays: rays of a point, 2 ... 16384, that find what surfaces reflect; glossy ones and small bright spots take many.
+return_error: return (irradiance, error), error (n, 3) being the standard deviation that rays leave. That of shadow rays
+    is estimated as if the edge of one shadow crossed each light, that of bounce_rays as if they were independent.
 transparent_bounces, seed: see shlight.render. threads: at most; 0: all cores. The result does not depend on it.
+progress: is called with the finished share, 0 ... 1, about every 20 ms; returning False cancels.
 
 Returns (n, 3), RGB [W m^-2]; shlight.luminous makes illuminance of it. float32 if both arrays are, otherwise float64;
 its precision is that of float32.
-Raises ValueError naming the argument and its row.)";
+Raises ValueError naming the argument and its row, and RenderCancelled.)";
 
 constexpr const char* kCoefficientsDoc =
-    R"(Find the light that comes to each point from the lights themselves, as coefficients.
+    R"(Find the light that comes to each point, as coefficients.
 
 points, normals: (n, 3), or (3,), which goes with all of the other; normals of any length > 0.
 order: 1 ... 64.
@@ -75,10 +79,15 @@ shadows: False: as if nothing were in the way. Then they are exact for an enviro
     even radiance: spheres, polygons, disks, suns, points and convex meshes. Others are summed over 4096 points of them.
 rays: shadow rays of a point for each light, 0 ... 16384; 0: as shadows=False. They estimate the integral of visibility
     times each harmonic, without noise where all of them agree.
+max_bounces: surfaces that light is reflected by before it comes to the point, at most; 0: the lights themselves.
+bounce_rays: rays of a point, 2 ... 16384, that find what surfaces reflect.
+return_error: return (coefficients, error), error (n, order^2, 3) being the standard deviation that rays leave. Shadow
+    rays tell it by two halves of them, roughly for each number and rightly for the mean square of many.
 transparent_bounces, seed: see shlight.render. threads: at most; 0: all cores. The result does not depend on it.
+progress: is called with the finished share, 0 ... 1, about every 20 ms; returning False cancels.
 
 Returns (n, order^2, 3), RGB; float32 if points and normals are, otherwise float64.
-Raises ValueError naming the argument and its row.)";
+Raises ValueError naming the argument and its row, and RenderCancelled.)";
 
 /// An array of vectors, of shape (n, 3) or (3,).
 struct Vectors {
@@ -211,12 +220,16 @@ py::object intersect_scene(SceneObject& self, const py::object& origins, const p
                       "triangle"_a = triangle.array());
 }
 
-/// Looks for Ctrl-C, where the thread that called is asked.
-Stopped signals_of(SignalWatch& watch) {
-    return [&watch] {
-        watch.look();
-        return false;
-    };
+/// Runs a query without the GIL. It is called with a Progress that asks the caller's function, and looks for Ctrl-C,
+/// now and then where the thread that called is asked.
+template <class Query>
+void run_query(const Progress& report, const Query& query) {
+    const py::gil_scoped_release release;
+    SignalWatch watch;
+    query(Progress([&](double share) { return !watch.is_due() || report(share); }));
+    if (!report(1)) {
+        throw RenderCancelled();
+    }
 }
 
 std::span<Vec3d> vectors_of(py::array_t<double>& array) {
@@ -229,7 +242,7 @@ py::array radiance_of_rays(SceneObject& self, const py::object& origins, const p
                            const py::object& shadows, const py::object& shadow_rays,
                            const py::object& transparent_bounces, const py::object& max_bounces,
                            const py::object& glossy_bounces, const py::object& transmission_bounces,
-                           const py::object& threads, const py::object& seed) {
+                           const py::object& threads, const py::object& seed, const py::object& progress) {
     RenderSettings settings;
     settings.order = order_from(order);
     settings.tolerance = real_from("tolerance", tolerance);
@@ -245,47 +258,57 @@ py::array radiance_of_rays(SceneObject& self, const py::object& origins, const p
     settings.seed = seed_from(seed);
     check_render(settings, 1, 1);
     const bool sees_lights = flag_from("lights", lights);
+    const Progress report = progress_from(progress);
     const Pairs rays({"origins", origins}, {"directions", directions}, &check_rays, settings.threads);
-    const auto scene = compiled(self, settings.threads, progress_from(py::none())).first;
+    const auto scene = compiled(self, settings.threads, report).first;
     py::array_t<double> result({static_cast<py::ssize_t>(rays.size()), py::ssize_t{3}});
-    {
-        const std::span<Vec3d> seen = vectors_of(result);
-        const py::gil_scoped_release release;
-        SignalWatch watch;
-        radiance(*scene, rays.first(), rays.second(), settings, sees_lights, seen, signals_of(watch));
-    }
+    const std::span<Vec3d> seen = vectors_of(result);
+    run_query(report, [&](const Progress& watched) {
+        radiance(*scene, rays.first(), rays.second(), settings, sees_lights, seen, watched);
+    });
     return rays.typed(result);
 }
 
-PointSettings point_settings(const py::object& shadows, const py::object& rays, const py::object& transparent_bounces,
+PointSettings point_settings(const py::object& shadows, const py::object& rays, const py::object& max_bounces,
+                             const py::object& bounce_rays, const py::object& transparent_bounces,
                              const py::object& threads, const py::object& seed) {
     const int most = int_from("rays", rays);
     const PointSettings settings = {flag_from("shadows", shadows) ? most : 0,
-                                    int_from("transparent_bounces", transparent_bounces), threads_from(threads),
+                                    int_from("transparent_bounces", transparent_bounces),
+                                    int_from("max_bounces", max_bounces),
+                                    int_from("bounce_rays", bounce_rays),
+                                    threads_from(threads),
                                     seed_from(seed)};
     check_settings(settings);
     return settings;
 }
 
+/// A query returns this: its result, or that and its error.
+py::object with_error_of(const Pairs& pairs, const py::array_t<double>& result, const py::array_t<double>& error,
+                         bool with_error) {
+    return with_error ? py::object(py::make_tuple(pairs.typed(result), pairs.typed(error)))
+                      : py::object(pairs.typed(result));
+}
+
 py::object irradiance_at(SceneObject& self, const py::object& points, const py::object& normals, const py::object& rays,
-                         const py::object& return_error, const py::object& transparent_bounces,
-                         const py::object& threads, const py::object& seed) {
-    const PointSettings settings = point_settings(py::bool_(true), rays, transparent_bounces, threads, seed);
+                         const py::object& max_bounces, const py::object& bounce_rays, const py::object& return_error,
+                         const py::object& transparent_bounces, const py::object& threads, const py::object& seed,
+                         const py::object& progress) {
+    const PointSettings settings =
+        point_settings(py::bool_(true), rays, max_bounces, bounce_rays, transparent_bounces, threads, seed);
     const bool with_error = flag_from("return_error", return_error);
+    const Progress report = progress_from(progress);
     const Pairs pairs({"points", points}, {"normals", normals}, &check_points, settings.threads);
-    const auto scene = compiled(self, settings.threads, progress_from(py::none())).first;
+    const auto scene = compiled(self, settings.threads, report).first;
     const auto rows = static_cast<py::ssize_t>(pairs.size());
     py::array_t<double> result({rows, py::ssize_t{3}});
     py::array_t<double> error({with_error ? rows : 0, py::ssize_t{3}});
-    {
-        const std::span<Vec3d> all = vectors_of(result);
-        const std::span<Vec3d> errors = vectors_of(error);
-        const py::gil_scoped_release release;
-        SignalWatch watch;
-        irradiance(*scene, pairs.first(), pairs.second(), settings, all, errors, signals_of(watch));
-    }
-    return with_error ? py::object(py::make_tuple(pairs.typed(result), pairs.typed(error)))
-                      : py::object(pairs.typed(result));
+    const std::span<Vec3d> all = vectors_of(result);
+    const std::span<Vec3d> errors = vectors_of(error);
+    run_query(report, [&](const Progress& watched) {
+        irradiance(*scene, pairs.first(), pairs.second(), settings, all, errors, watched);
+    });
+    return with_error_of(pairs, result, error, with_error);
 }
 
 /// The frames that shlight.shading_frames makes.
@@ -308,24 +331,28 @@ std::vector<glm::dmat3> frames_from(const py::object& normals, const py::object&
     return frames;
 }
 
-py::array light_coefficients_at(SceneObject& self, const py::object& points, const py::object& normals,
-                                const py::object& order, const py::object& tangents, const py::object& shadows,
-                                const py::object& rays, const py::object& transparent_bounces,
-                                const py::object& threads, const py::object& seed) {
+py::object light_coefficients_at(SceneObject& self, const py::object& points, const py::object& normals,
+                                 const py::object& order, const py::object& tangents, const py::object& shadows,
+                                 const py::object& rays, const py::object& max_bounces, const py::object& bounce_rays,
+                                 const py::object& return_error, const py::object& transparent_bounces,
+                                 const py::object& threads, const py::object& seed, const py::object& progress) {
     const int n = static_cast<int>(integer_from("order", order, 1, kMaxOrder));
-    const PointSettings settings = point_settings(shadows, rays, transparent_bounces, threads, seed);
+    const PointSettings settings =
+        point_settings(shadows, rays, max_bounces, bounce_rays, transparent_bounces, threads, seed);
+    const bool with_error = flag_from("return_error", return_error);
+    const Progress report = progress_from(progress);
     const Pairs pairs({"points", points}, {"normals", normals}, &check_points, settings.threads);
     const std::vector<glm::dmat3> frames = frames_from(normals, tangents, pairs.size());
-    const auto scene = compiled(self, settings.threads, progress_from(py::none())).first;
-    py::array_t<double> result(
-        {static_cast<py::ssize_t>(pairs.size()), py::ssize_t{coefficient_count(n)}, py::ssize_t{3}});
-    {
-        const std::span<double> all(result.mutable_data(), static_cast<std::size_t>(result.size()));
-        const py::gil_scoped_release release;
-        SignalWatch watch;
-        light_coefficients(*scene, pairs.first(), frames, n, settings, all, signals_of(watch));
-    }
-    return pairs.typed(result);
+    const auto scene = compiled(self, settings.threads, report).first;
+    const auto rows = static_cast<py::ssize_t>(pairs.size());
+    py::array_t<double> result({rows, py::ssize_t{coefficient_count(n)}, py::ssize_t{3}});
+    py::array_t<double> error({with_error ? rows : 0, py::ssize_t{coefficient_count(n)}, py::ssize_t{3}});
+    const std::span<double> all(result.mutable_data(), static_cast<std::size_t>(result.size()));
+    const std::span<double> errors(error.mutable_data(), static_cast<std::size_t>(error.size()));
+    run_query(report, [&](const Progress& watched) {
+        light_coefficients(*scene, pairs.first(), frames, n, settings, all, errors, watched);
+    });
+    return with_error_of(pairs, result, error, with_error);
 }
 
 }  // namespace
@@ -338,13 +365,16 @@ void bind_queries(py::class_<SceneObject>& scene) {
               "noise_threshold"_a = PixelSampling().noise_threshold, "min_samples"_a = 1,
               "max_samples"_a = PixelSampling().max_samples, "lights"_a = true, "shadows"_a = true,
               "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8, "max_bounces"_a = 0,
-              "glossy_bounces"_a = py::none(), "transmission_bounces"_a = py::none(), "threads"_a = 0, "seed"_a = 0);
+              "glossy_bounces"_a = py::none(), "transmission_bounces"_a = py::none(), "threads"_a = 0, "seed"_a = 0,
+              "progress"_a = py::none());
     scene.def("irradiance", &irradiance_at, kIrradianceDoc, "points"_a, "normals"_a, py::kw_only(),
-              "rays"_a = PointSettings().rays, "return_error"_a = false, "transparent_bounces"_a = 8, "threads"_a = 0,
-              "seed"_a = 0);
+              "rays"_a = PointSettings().rays, "max_bounces"_a = 0, "bounce_rays"_a = PointSettings().bounce_rays,
+              "return_error"_a = false, "transparent_bounces"_a = 8, "threads"_a = 0, "seed"_a = 0,
+              "progress"_a = py::none());
     scene.def("light_coefficients", &light_coefficients_at, kCoefficientsDoc, "points"_a, "normals"_a, "order"_a,
               py::kw_only(), "tangents"_a = py::none(), "shadows"_a = true, "rays"_a = PointSettings().rays,
-              "transparent_bounces"_a = 8, "threads"_a = 0, "seed"_a = 0);
+              "max_bounces"_a = 0, "bounce_rays"_a = PointSettings().bounce_rays, "return_error"_a = false,
+              "transparent_bounces"_a = 8, "threads"_a = 0, "seed"_a = 0, "progress"_a = py::none());
 }
 
 }  // namespace shlight::python

@@ -140,7 +140,8 @@ SETTINGS = {
 }
 RAYS = {"origins": [[0.0, 0.0, 3.0], [0.0, 0.0, 4.0]], "directions": [0.0, 0.0, -1.0]}
 POINTS = {"points": [[0.0, 0.0, 3.0], [0.0, 0.0, 4.0]], "normals": [0.0, 0.0, 1.0]}
-SHADOWED = {"rays": 2, "transparent_bounces": 1, "threads": 1, "seed": 3}
+SHADOWED = {"rays": 2, "transparent_bounces": 1, "max_bounces": 1, "bounce_rays": 2, "threads": 1, "seed": 3}
+TOLD = {"return_error": True, "progress": None}
 OF_RADIANCE = (
     *("order", "tolerance", "noise_threshold", "max_samples", "shadows", "shadow_rays", "transparent_bounces"),
     *("max_bounces", "glossy_bounces", "transmission_bounces", "seed"),
@@ -204,14 +205,21 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),
     "Scene.intersect": (of_scene("intersect"), {**RAYS, "threads": 1}),
-    "Scene.irradiance": (of_scene("irradiance"), {**POINTS, **SHADOWED, "return_error": True}),
+    "Scene.irradiance": (of_scene("irradiance"), {**POINTS, **SHADOWED, **TOLD}),
     "Scene.light_coefficients": (
         of_scene("light_coefficients"),
-        {**POINTS, **SHADOWED, "order": 2, "tangents": [1.0, 0.0, 0.0], "shadows": True},
+        {**POINTS, **SHADOWED, **TOLD, "order": 2, "tangents": [1.0, 0.0, 0.0], "shadows": True},
     ),
     "Scene.radiance": (
         of_scene("radiance"),
-        {**RAYS, **{name: SETTINGS[name] for name in OF_RADIANCE}, "min_samples": 1, "lights": False, "threads": 1},
+        {
+            **RAYS,
+            **{name: SETTINGS[name] for name in OF_RADIANCE},
+            "min_samples": 1,
+            "lights": False,
+            "threads": 1,
+            "progress": None,
+        },
     ),
     "Light.remove": (lambda: shlight.Scene().add_point_light([0, 0, 1], RGB).remove(), {}),
     "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in OF_MATERIALS}),

@@ -142,14 +142,20 @@ def test_rays_see_the_environment_where_the_camera_does() -> None:
     np.testing.assert_allclose(scene.radiance([0, 0, 1], down_and_up), [[1, 2, 3], [0, 0, 0]], rtol=1e-5)
 
 
-@pytest.mark.parametrize("bounces", [0, 1, 3])
-def test_rays_in_a_furnace_see_each_bounce(bounces: int) -> None:
-    """Walls of albedo 0.5 that emit 1: n reflections add 1/2 + 1/4 + ... of it."""
+def furnace() -> shlight.Scene:
+    """A cube whose walls have the albedo 0.5 and emit 1."""
     corners = np.array([[x, y, z] for x in (-1.0, 1) for y in (-1, 1) for z in (-1, 1)])
     sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     faces = [[side[0], *pair] for side in sides for pair in (side[1:3], side[2:])]
     scene = shlight.Scene()
     scene.add_mesh(corners, faces, bsdf=Bsdf.lambert(0.5), emission=[1, 1, 1])
+    return scene
+
+
+@pytest.mark.parametrize("bounces", [0, 1, 3])
+def test_rays_in_a_furnace_see_each_bounce(bounces: int) -> None:
+    """n reflections add 1/2 + 1/4 + ... of what walls emit."""
+    scene = furnace()
     directions = np.random.default_rng(2).normal(size=(50, 3))
     reflected = sum(0.5**n for n in range(1, bounces + 2))
     given: dict[str, Any] = {"max_bounces": bounces, "noise_threshold": 0, "max_samples": 256}
@@ -416,3 +422,109 @@ def test_light_at_points_does_not_depend_on_threads() -> None:
         scene.light_coefficients(points, normals, 3, threads=1),
         scene.light_coefficients(points, normals, 3, threads=3),
     )
+
+
+@pytest.mark.parametrize("bounces", [1, 3])
+def test_points_in_a_furnace_get_each_bounce(bounces: int) -> None:
+    points, normals = np.random.default_rng(13).uniform(-0.9, 0.9, (2, 40, 3))
+    points[:10, 2] = -1  # on a wall
+    normals[:10] = [0, 0, 1]
+    whole = sum(0.5**n for n in range(bounces + 1))
+    given: dict[str, Any] = {"max_bounces": bounces, "return_error": True}
+    found, error = furnace().irradiance(points, normals, **given)
+    np.testing.assert_allclose(found, np.pi * whole, rtol=0, atol=5 * error.max() + 1e-3)
+    assert error.max() <= 0.1
+    found, error = furnace().light_coefficients(points, normals, 3, **given)
+    true = of_region("cap_coefficients", axes=[0, 0, 1.0], half_angles=np.pi / 2)[:9, None] * whole
+    assert np.sqrt(np.mean((found - true) ** 2)) <= 2 * np.sqrt(np.mean(error**2)) + 1e-3
+    assert np.sqrt(np.mean(error**2)) <= 0.1
+
+
+def wall_patches(count: int = 200) -> tuple[Floats, Floats]:
+    """The middles of so many times so many patches of WALL, and their normal times their area."""
+    share = (np.arange(count) + 0.5) / count
+    u, v = np.meshgrid(share, share, indexing="ij")
+    a, b = WALL[1] - WALL[0], WALL[3] - WALL[0]
+    places = WALL[0] + u.reshape(-1, 1) * a + v.reshape(-1, 1) * b
+    return places, np.cross(a, b) / count**2
+
+
+POINT_LIGHT = np.array([0.2, -0.1, 0.1])
+
+
+def test_light_that_a_wall_reflects_is_that_of_its_patches() -> None:
+    albedo = np.array([0.9, 0.6, 0.3])
+    scene = shlight.Scene()
+    scene.add_mesh(WALL, FACES, bsdf=Bsdf.lambert(albedo))
+    scene.add_point_light(POINT_LIGHT, RADIANCE)
+    points, normals = floor_points(50, seed=14)
+    frames = shlight.shading_frames(normals)
+    places, area = wall_patches()
+    to_light = POINT_LIGHT - places
+    side = -area if area @ (POINT_LIGHT - WALL[0]) < 0 else area
+    lit = np.maximum(unit(to_light) @ unit(side), 0) / (to_light**2).sum(-1)
+    ways = places - points[:, None]
+    angles = np.maximum(-(unit(ways) @ side), 0) / (ways**2).sum(-1) * lit  # times radiance
+    local = np.einsum("nrj,njk->nrk", unit(ways), frames)
+    color = albedo / np.pi * RADIANCE
+    cosines = np.maximum(local[..., 2], 0)
+    true = (angles * cosines).sum(-1)[:, None] * color
+    given: dict[str, Any] = {"bounce_rays": 1024, "return_error": True}
+    found, error = scene.irradiance(points, normals, max_bounces=1, **given)
+    off = found - scene.irradiance(points, normals) - true
+    assert np.sqrt(np.mean(off**2)) <= 0.06 * true.mean()
+    assert 0.05 <= np.sqrt(np.mean(off**2) / np.mean(error**2)) <= 1.2  # rays are spread more evenly than random ones
+    basis = shlight.sh_basis(local, 4, dtype=np.float64)
+    true = np.einsum("nr,nrk->nk", angles * (local[..., 2] > 0), basis)[..., None] * color
+    found, error = scene.light_coefficients(points, normals, 4, max_bounces=1, **given)
+    off = found - scene.light_coefficients(points, normals, 4) - true
+    assert np.sqrt(np.mean(off**2)) <= 0.05 * np.sqrt(np.mean(true[:, 0] ** 2))
+    assert 0.05 <= np.sqrt(np.mean(off**2) / np.mean(error**2)) <= 1.2
+
+
+def test_errors_of_coefficients_are_those_that_shadow_rays_leave() -> None:
+    points, normals = floor_points(60, seed=15)
+    scene = half_hidden()
+    true = scene.light_coefficients(points, normals, 3, rays=4096)
+    found, error = scene.light_coefficients(points, normals, 3, rays=32, return_error=True)
+    assert error.shape == found.shape
+    np.testing.assert_array_equal(error[np.abs(found - true).max(axis=(1, 2)) < 1e-12], 0)
+    ratio = np.sqrt(np.mean((found - true) ** 2) / np.mean(error**2))
+    assert 0.5 <= ratio <= 2
+    with pytest.raises(ValueError, match=r"^rays must be 0 or at least 2"):
+        scene.light_coefficients(points, normals, 3, rays=1, return_error=True)
+
+
+LONG: dict[str, tuple[Any, ...]] = {"irradiance": (), "light_coefficients": (6,), "radiance": ()}
+
+
+@pytest.mark.parametrize("method", LONG)
+def test_long_queries_tell_their_progress_and_can_be_cancelled(method: str) -> None:
+    points, normals = floor_points(20_000, seed=16)
+    scene = lit_scene()
+    query, rest = getattr(scene, method), LONG[method]
+    given: dict[str, Any] = {"max_bounces": 1}
+    shares: list[float] = []
+
+    def count(share: float) -> None:
+        shares.append(share)
+
+    query(points[:2000], normals[:2000], *rest, progress=count, **given)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1
+    assert len(shares) > 2
+    shares.clear()
+
+    def end(share: float) -> bool:
+        shares.append(share)
+        return len(shares) < 3
+
+    with pytest.raises(shlight.RenderCancelled):
+        query(points, normals, *rest, progress=end, **given)
+    assert shares[-1] < 1
+
+    def fail(share: float) -> bool:
+        raise KeyError("stop")
+
+    with pytest.raises(KeyError):
+        query(points, normals, *rest, progress=fail, **given)

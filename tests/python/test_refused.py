@@ -67,6 +67,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "axes": NO_DIRECTION,
     "blend": (1.1,),
     "bottom": (1.0,),
+    "bounce_rays": (1, -1, 2**15),
     "bsdf": (0.5, "ggx", [0.8]),
     "center": NO_PLACE,
     "centers": NO_VECTOR,

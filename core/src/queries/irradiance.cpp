@@ -10,8 +10,10 @@
 #include "base/ray_rounding.h"
 #include "base/unit_direction.h"
 #include "lighting/direct_lighting.h"
+#include "queries/bounced_light.h"
 #include "queries/point_cells.h"
 #include "queries/query_points.h"
+#include "queries/query_progress.h"
 #include "shlight/sampling.h"
 #include "shlight/scene_queries.h"
 
@@ -51,11 +53,11 @@ struct PointShader {
 class IrradianceQuery {
   public:
     IrradianceQuery(const CompiledScene& scene, std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                    const PointSettings& settings, const Stopped& stopped)
+                    const PointSettings& settings, QueryProgress& progress)
         : points_(points),
           normals_(normals),
           settings_(&settings),
-          stopped_(&stopped),
+          progress_(&progress),
           lighting_(scene.lights(), scene.extended_light_count(), scene.environment(), scene.environment_group(),
                     {MaterialLobes(Bsdf::lambert(Rgb(1)).lobes(), 0, kTolerance)}, 0, kTolerance),
           cells_(points, kCellPoints),
@@ -77,7 +79,7 @@ class IrradianceQuery {
 
     std::span<const Vec3d> points_, normals_;
     const PointSettings* settings_;
-    const Stopped* stopped_;
+    QueryProgress* progress_;
     LightingScene lighting_;
     PointCells cells_;
     std::vector<std::uint32_t> penumbrae_;  // of each cell, as in LightBits
@@ -87,7 +89,7 @@ class IrradianceQuery {
 template <class Visit>
 void IrradianceQuery::shade(std::size_t first, std::size_t last, std::size_t step, const SampleRange& samples,
                             std::uint32_t seed, const Visit& visit) {
-    end_if(*stopped_);
+    progress_->add(0);
     PointShader& shader = shaders_.local();
     shader.positions.clear();
     shader.frames.clear();
@@ -135,6 +137,7 @@ void IrradianceQuery::run(std::span<Vec3d> irradiance, std::span<Vec3d> errors) 
     const std::uint32_t rays = kTimesShare * static_cast<std::uint32_t>(settings_->rays);
     const double evenness = 1 / std::sqrt(std::max(settings_->rays, 1));
     const std::size_t size = std::min<std::size_t>(kIrradianceBatch, lighting_.batch_size());
+    progress_->start(points_.size());
     parallel_for((points_.size() + size - 1) / size, settings_->threads, [&](std::size_t batch) {
         const std::size_t last = std::min((batch + 1) * size, points_.size());
         shade(batch * size, last, 1, {0, 1, rays, 0, !asks}, 0, [&](std::size_t i, const Hits& hits, std::size_t hit) {
@@ -145,19 +148,53 @@ void IrradianceQuery::run(std::span<Vec3d> irradiance, std::span<Vec3d> errors) 
                 errors[cells_.order()[i]] = std::numbers::pi * glm::sqrt(variance);
             }
         });
+        progress_->add(last - batch * size);
     });
+}
+
+/// Adds the light that surfaces reflect to the points.
+void add_bounced(const CompiledScene& scene, std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                 const PointSettings& settings, const Progress& progress, std::span<Vec3d> irradiance,
+                 std::span<Vec3d> errors) {
+    std::vector<ShadingFrame> frames;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3d normal = unit_direction(normals[i]);
+        frames.push_back(shading_frame(points[i], normal, normal));
+    }
+    const auto visit = [&](std::size_t point, std::span<const Vec3d> /*ways*/, std::span<const Vec3d> radiance) {
+        const auto count = static_cast<double>(radiance.size());
+        Vec3d mean(0);
+        for (const Vec3d& own : radiance) {
+            mean += own / count;
+        }
+        Vec3d square(0);
+        for (const Vec3d& own : radiance) {
+            square += (own - mean) * (own - mean);
+        }
+        irradiance[point] += std::numbers::pi * mean;
+        if (!errors.empty()) {
+            const Vec3d by_rays = square * (std::numbers::pi * std::numbers::pi / (count * (count - 1)));
+            errors[point] = glm::sqrt(errors[point] * errors[point] + by_rays);
+        }
+    };
+    visit_bounced_light(scene, points, frames, settings, Spread::by_cosine, progress, kDirectShare, visit);
 }
 
 }  // namespace
 
 void irradiance(const CompiledScene& scene, std::span<const Vec3d> points, std::span<const Vec3d> normals,
                 const PointSettings& settings, std::span<Vec3d> irradiance, std::span<Vec3d> errors,
-                const Stopped& stopped) {
+                const Progress& progress) {
     check_settings(settings);
     check_size("irradiance", irradiance.size(), points.size());
     check_size("errors", errors.size(), errors.empty() ? 0 : points.size());
-    if (!points.empty()) {
-        IrradianceQuery(scene, points, normals, settings, stopped).run(irradiance, errors);
+    if (points.empty()) {
+        return;
+    }
+    QueryProgress part(progress, 0, settings.max_bounces > 0 ? kDirectShare : 1);
+    IrradianceQuery(scene, points, normals, settings, part).run(irradiance, errors);
+    if (settings.max_bounces > 0) {
+        add_bounced(scene, points, normals, settings, progress, irradiance, errors);
     }
 }
 

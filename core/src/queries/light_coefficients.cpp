@@ -19,7 +19,9 @@
 #include "lighting/ray_sums.h"
 #include "lighting/shadow_targets.h"
 #include "lights/delta_lights.h"
+#include "queries/bounced_light.h"
 #include "queries/query_points.h"
+#include "queries/query_progress.h"
 #include "queries/unshadowed_coefficients.h"
 #include "shlight/basis.h"
 #include "shlight/sampling.h"
@@ -35,6 +37,13 @@ constexpr std::size_t kBatchRays = std::size_t{1} << 15;
 constexpr std::uint32_t kSumPoints = 4096;
 /// Seed of these, the same for all points.
 constexpr std::uint32_t kSumSeed = 0xFFFFFFFBU;
+
+/// row: of RGB.
+void add_to(std::span<double> rows, std::size_t row, const Vec3d& value) {
+    for (int channel = 0; channel < 3; ++channel) {
+        rows[3 * row + static_cast<std::size_t>(channel)] += value[channel];
+    }
+}
 
 /// A point that a light shines on, and the rays from there, begin … end - 1 of DrawnRays. The two halves of them,
 /// between which `middle` is, are independent.
@@ -55,9 +64,9 @@ class PointCoefficients {
           environment_(scene.environment(), nullptr),
           deltas_(scene.lights().subspan(scene.extended_light_count())) {}
 
-    /// coefficients: points × order² × RGB.
+    /// coefficients: points × order² × RGB; variances: likewise, or none.
     void find(std::span<const Vec3d> points, std::span<const ShadingFrame> frames, std::span<const std::uint32_t> seeds,
-              std::span<double> coefficients);
+              std::span<double> coefficients, std::span<double> variances);
 
   private:
     void add_light(const Light& light);
@@ -81,9 +90,7 @@ class PointCoefficients {
     /// Whether a ray is not blocked, or does not count.
     bool is_open(std::size_t ray) const { return drawn_.drawn[ray].hidden_layer || drawn_.visible[ray] == Rgb(1); }
     void add_value(std::size_t hit, std::size_t harmonic, const Vec3d& value) {
-        for (int channel = 0; channel < 3; ++channel) {
-            coefficients_[3 * (hit * width_ + harmonic) + static_cast<std::size_t>(channel)] += value[channel];
-        }
+        add_to(coefficients_, hit * width_ + harmonic, value);
     }
 
     const CompiledScene* scene_;
@@ -98,7 +105,7 @@ class PointCoefficients {
     DeltaViews delta_views_;
     UnshadowedCoefficients unshadowed_;
     std::span<const std::uint32_t> seeds_;
-    std::span<double> coefficients_;
+    std::span<double> coefficients_, variances_;
 
     // The light at hand:
     std::vector<Run> runs_;
@@ -113,11 +120,14 @@ class PointCoefficients {
 };
 
 void PointCoefficients::find(std::span<const Vec3d> points, std::span<const ShadingFrame> frames,
-                             std::span<const std::uint32_t> seeds, std::span<double> coefficients) {
+                             std::span<const std::uint32_t> seeds, std::span<double> coefficients,
+                             std::span<double> variances) {
     points_.set(points, frames);
     seeds_ = seeds;
     coefficients_ = coefficients;
+    variances_ = variances;
     std::fill(coefficients.begin(), coefficients.end(), 0.0);
+    std::fill(variances.begin(), variances.end(), 0.0);
     for (const Light& light : scene_->lights().first(scene_->extended_light_count())) {
         add_light(light);
     }
@@ -283,13 +293,22 @@ void PointCoefficients::add_seen(const Run& run, const Vec3d& strength) {
         const RaySums& sums = others.all == Vec3d(0) ? halves[half] : others;
         kept[half] = quotient(sums.seen, sums.all);
     }
+    const double share = 1.0 * first_half() / rays_;
+    const std::array<double, 2> shares = {share, 1 - share};
     for (std::size_t k = 0; k < width_; ++k) {
-        Vec3d sum = glm::mix(kept[1], kept[0], 1.0 * first_half() / rays_) * whole_[run.hit * width_ + k];
-        for (std::size_t i = 0; i < weights_.size(); ++i) {
-            sum +=
-                (Vec3d(drawn_.visible[run.begin + i]) - kept[half_of(run, i)]) * weights_[i] * basis_[i * width_ + k];
+        std::array<Vec3d, 2> sums;
+        for (std::size_t half = 0; half < 2; ++half) {
+            sums[half] = shares[half] * kept[half] * whole_[run.hit * width_ + k];
         }
-        add_value(run.hit, k, strength * sum);
+        for (std::size_t i = 0; i < weights_.size(); ++i) {
+            const std::size_t half = half_of(run, i);
+            sums[half] += (Vec3d(drawn_.visible[run.begin + i]) - kept[half]) * weights_[i] * basis_[i * width_ + k];
+        }
+        add_value(run.hit, k, strength * (sums[0] + sums[1]));
+        if (!variances_.empty()) {
+            const Vec3d apart = strength * (sums[0] / shares[0] - sums[1] / shares[1]);
+            add_to(variances_, run.hit * width_ + k, shares[0] * shares[1] * apart * apart);
+        }
     }
 }
 
@@ -321,30 +340,74 @@ void PointCoefficients::add_deltas(std::size_t hit) {
     }
 }
 
+/// The coefficients that rays of a point, spread evenly over its half space, bring, and their variances if there are
+/// any.
+void add_bounced_rays(std::span<const Vec3d> ways, std::span<const Vec3d> radiance, int order,
+                      std::span<double> coefficients, std::span<double> variances) {
+    const auto width = static_cast<std::size_t>(coefficient_count(order));
+    const auto count = static_cast<double>(ways.size());
+    std::vector<double> basis(ways.size() * width);
+    sh_basis<double>(ways, order, basis);
+    for (std::size_t k = 0; k < width; ++k) {
+        Vec3d sum(0);
+        Vec3d squares(0);
+        for (std::size_t ray = 0; ray < ways.size(); ++ray) {
+            const Vec3d own = 2 * std::numbers::pi * basis[ray * width + k] * radiance[ray];
+            sum += own;
+            squares += own * own;
+        }
+        add_to(coefficients, k, sum / count);
+        if (!variances.empty()) {
+            const Vec3d square = glm::max(squares / count - sum * sum / (count * count), Vec3d(0));
+            add_to(variances, k, square / (count - 1));
+        }
+    }
+}
+
 }  // namespace
 
 void light_coefficients(const CompiledScene& scene, std::span<const Vec3d> points, std::span<const glm::dmat3> frames,
                         int order, const PointSettings& settings, std::span<double> coefficients,
-                        const Stopped& stopped) {
+                        std::span<double> errors, const Progress& progress) {
     check_order(order);
     check_settings(settings);
     const std::size_t width = 3 * static_cast<std::size_t>(coefficient_count(order));
     check_size("frames", frames.size(), points.size());
     check_size("coefficients", coefficients.size(), points.size() * width);
+    check_size("errors", errors.size(), errors.empty() ? 0 : points.size() * width);
+    if (!errors.empty() && settings.rays == 1) {
+        reject("rays must be 0 or at least 2 to tell errors, got 1");
+    }
+    std::vector<ShadingFrame> axes;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        axes.push_back({points[i], frames[i][0], frames[i][1], frames[i][2]});
+    }
+    const auto rows = [&](std::span<double> all, std::size_t first, std::size_t count) {
+        return all.empty() ? all : all.subspan(first * width, count * width);
+    };
+    QueryProgress part(progress, 0, settings.max_bounces > 0 ? kDirectShare : 1);
+    part.start(points.size());
     tbb::enumerable_thread_specific<PointCoefficients> all([&] { return PointCoefficients(scene, order, settings); });
     const std::size_t size = std::clamp<std::size_t>(kBatchRays / std::max(settings.rays, 1), 1, kBatchPoints);
     parallel_for((points.size() + size - 1) / size, settings.threads, [&](std::size_t batch) {
-        end_if(stopped);
+        part.add(0);
         const std::size_t first = batch * size;
         const std::size_t count = std::min(size, points.size() - first);
-        std::vector<ShadingFrame> axes;
         std::vector<std::uint32_t> seeds;
         for (std::size_t i = first; i < first + count; ++i) {
-            axes.push_back({points[i], frames[i][0], frames[i][1], frames[i][2]});
             seeds.push_back(hash(static_cast<std::uint32_t>(i), settings.seed));
         }
-        all.local().find(points.subspan(first, count), axes, seeds, coefficients.subspan(first * width, count * width));
+        all.local().find(points.subspan(first, count), std::span(axes).subspan(first, count), seeds,
+                         rows(coefficients, first, count), rows(errors, first, count));
+        part.add(count);
     });
+    if (settings.max_bounces > 0) {
+        const auto visit = [&](std::size_t point, std::span<const Vec3d> ways, std::span<const Vec3d> radiance) {
+            add_bounced_rays(ways, radiance, order, rows(coefficients, point, 1), rows(errors, point, 1));
+        };
+        visit_bounced_light(scene, points, axes, settings, Spread::evenly, progress, kDirectShare, visit);
+    }
+    std::transform(errors.begin(), errors.end(), errors.begin(), [](double variance) { return std::sqrt(variance); });
 }
 
 }  // namespace shlight

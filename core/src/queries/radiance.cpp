@@ -10,6 +10,7 @@
 #include "lighting/direct_lighting.h"
 #include "lighting/ray_sums.h"
 #include "queries/query_points.h"
+#include "queries/query_progress.h"
 #include "shlight/sampling.h"
 #include "shlight/scene_queries.h"
 #include "surfaces/camera_surfaces.h"
@@ -64,16 +65,16 @@ struct RayShader {
 class RadianceQuery {
   public:
     RadianceQuery(const CompiledScene& scene, std::span<const Vec3d> origins, std::span<const Vec3d> directions,
-                  const RenderSettings& settings, bool sees_lights, const Stopped& stopped)
+                  const RenderSettings& settings, bool sees_lights, const Progress& progress)
         : scene_(&scene),
           origins_(origins),
           directions_(directions),
           settings_(&settings),
           sees_lights_(sees_lights),
-          stopped_(&stopped),
+          progress_(progress),
           lighting_(scene.lights(), scene.extended_light_count(), scene.environment(), scene.environment_group(),
-                    lobes_of_materials(scene.materials(), settings.order, settings.tolerance, stopped), settings.order,
-                    settings.tolerance),
+                    lobes_of_materials(scene.materials(), settings.order, settings.tolerance, progress_.stopped()),
+                    settings.order, settings.tolerance),
           seen_(origins.size()),
           shaders_([this] { return RayShader(*scene_, lighting_, paths()); }) {}
 
@@ -97,7 +98,7 @@ class RadianceQuery {
     std::span<const Vec3d> origins_, directions_;
     const RenderSettings* settings_;
     bool sees_lights_;
-    const Stopped* stopped_;
+    QueryProgress progress_;
     LightingScene lighting_;
     std::vector<Seen> seen_;
     double least_square_ = 0;
@@ -112,13 +113,14 @@ void RadianceQuery::run(std::span<Vec3d> radiance) {
     const auto most = static_cast<std::uint32_t>(sampling.max_samples);
     const std::uint32_t least = settings_->max_bounces > 0 ? kLeastPaths : 1;
     std::uint32_t count = std::clamp(static_cast<std::uint32_t>(sampling.min_samples), std::min(least, most), most);
+    progress_.start(pixels.size() * most);
     for (std::uint32_t first = 0; !pixels.empty() && first < most;) {
         const std::size_t size = std::max(at_once / count, 1U);
         parallel_for((pixels.size() + size - 1) / size, settings_->threads, [&](std::size_t batch) {
-            end_if(*stopped_);
             const auto some = std::span(pixels).subspan(batch * size, std::min(size, pixels.size() - batch * size));
             for (std::uint32_t done = 0; done < count; done += at_once) {
                 shade(some, first + done, std::min(count - done, at_once), shaders_.local());
+                progress_.add(some.size() * std::min(count - done, at_once));
             }
         });
         for (const std::uint32_t pixel : pixels) {
@@ -130,7 +132,9 @@ void RadianceQuery::run(std::span<Vec3d> radiance) {
             least_square_ = 0.01 * mean * mean;
         }
         first += count;
+        const std::size_t followed = pixels.size();
         erase_good(pixels, first);
+        progress_.add((followed - pixels.size()) * (most - first));
         count = std::min(first, most - first);
     }
 }
@@ -193,10 +197,10 @@ void RadianceQuery::add_up(std::span<const std::uint32_t> pixels, std::uint32_t 
 }  // namespace
 
 void radiance(const CompiledScene& scene, std::span<const Vec3d> origins, std::span<const Vec3d> directions,
-              const RenderSettings& settings, bool sees_lights, std::span<Vec3d> radiance, const Stopped& stopped) {
+              const RenderSettings& settings, bool sees_lights, std::span<Vec3d> radiance, const Progress& progress) {
     check_render(settings, 1, 1);
     check_size("radiance", radiance.size(), origins.size());
-    RadianceQuery(scene, origins, directions, settings, sees_lights, stopped).run(radiance);
+    RadianceQuery(scene, origins, directions, settings, sees_lights, progress).run(radiance);
 }
 
 }  // namespace shlight

@@ -34,14 +34,17 @@ void check_points(std::span<const Vec3d> points, std::span<const Vec3d> normals)
 
 void check_settings(const PointSettings& settings) {
     constexpr int kMostRays = 1 << 14;
-    const auto check = [](const char* name, int value, int most) {
-        if (value < 0 || value > most) {
-            reject(std::string(name) + " must be 0 … " + std::to_string(most) + ", got " + std::to_string(value));
+    const auto check = [](const char* name, int value, int least, int most) {
+        if (value < least || value > most) {
+            reject(std::string(name) + " must be " + std::to_string(least) + " … " + std::to_string(most) + ", got " +
+                   std::to_string(value));
         }
     };
-    check("rays", settings.rays, kMostRays);
-    check("transparent_bounces", settings.transparent_bounces, kMostBounces);
-    check("threads", settings.threads, std::numeric_limits<int>::max());
+    check("rays", settings.rays, 0, kMostRays);
+    check("transparent_bounces", settings.transparent_bounces, 0, kMostBounces);
+    check("max_bounces", settings.max_bounces, 0, kMostBounces);
+    check("bounce_rays", settings.bounce_rays, 2, kMostRays);
+    check("threads", settings.threads, 0, std::numeric_limits<int>::max());
 }
 
 void intersect(const CompiledScene& scene, std::span<const Vec3d> origins, std::span<const Vec3d> directions,
