@@ -93,7 +93,7 @@ class Bsdfs:
 
 
 def lobes_of_rows(bsdf: Bsdfs, shape: tuple[int, ...]) -> tuple[_core.Bsdf, Singles, Singles]:
-    """What the core takes: lobes, colours (n, lobes, 3) and alphas (n, lobes) for the n rows of a shape."""
+    """The core takes lobes, colours (n, lobes, 3) and alphas (n, lobes) for the n rows of a shape."""
     count = bsdf._colors.shape[-2]
     return bsdf._lobes, rows(bsdf._colors, shape, count, 3), rows(bsdf._alphas, shape, count)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shlight._arrays import Floats, broadcast, check_last, checked_array, given_type, rows
+from shlight._arrays import Floats, broadcast, check_finite, check_last, checked_array, given_type, rows
 from shlight._calls import names_rows
 
 __all__ = ["look_at"]
@@ -27,8 +27,7 @@ def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) 
     arrays = {name: checked_array(name, value, np.float64, core_axes=1) for name, value in given.items()}
     for name, array in arrays.items():
         check_last(name, array, 3)
-        if not np.isfinite(array).all():
-            raise ValueError(f"{name} must be finite", int(np.argmin(np.isfinite(array).all(axis=-1))))
+        check_finite(name, array, core_axes=1)
     shape = broadcast(**{name: array.shape[:-1] for name, array in arrays.items()})
     place, aim, above = (rows(array, shape, 3) for array in arrays.values())
     back, towards = _unit(place / 2 - aim / 2), _unit(above)  # halves, whose difference cannot overflow

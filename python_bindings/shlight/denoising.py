@@ -17,7 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shlight._arrays import Floats, check_last, checked_array, checked_callable, checked_name, checked_threads
+from shlight._arrays import (
+    Floats,
+    check_finite,
+    check_last,
+    checked_array,
+    checked_callable,
+    checked_name,
+    checked_threads,
+)
 from shlight._core import RenderCancelled
 
 __all__ = ["denoise", "has_denoiser"]
@@ -82,8 +90,7 @@ def denoise(
 
 def _checked_picture(name: str, value: ArrayLike, size: tuple[int, ...] | None) -> Floats:
     array = checked_array(name, value, np.float32)
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} contains a number that is not finite")
+    check_finite(name, array)
     if array.ndim != 3 or array.size == 0 or (size is None and array.shape[2] < 3):
         raise ValueError(f"{name} must have shape (height, width, channels), got {array.shape}")
     if size is not None:

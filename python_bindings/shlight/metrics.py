@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from shlight._arrays import checked_array, checked_integer, checked_number
+from shlight._arrays import check_finite, checked_array, checked_integer, checked_number
 
 __all__ = [
     "box_mean",
@@ -109,8 +109,7 @@ def _pair(
         if array.ndim != 3 or array.shape[2] < 3 or array.size == 0:
             raise ValueError(f"{name} must have shape (height, width, 3 or more), not {array.shape}")
         array = array[..., :3]
-        if not np.isfinite(array).all():
-            raise ValueError(f"{name} holds {np.count_nonzero(~np.isfinite(array))} values that are not finite")
+        check_finite(name, array)
         arrays.append(array)
     if arrays[0].shape != arrays[1].shape:
         raise ValueError(f"{names[0]} and {names[1]} differ in size: {arrays[0].shape} and {arrays[1].shape}")

@@ -276,12 +276,28 @@ std::string described(const LobeShape& shape) {
     return text.str();
 }
 
+/// The lobes, with the channels of a table as one.
+std::vector<Lobe> lobes_to_show(const Bsdf& bsdf) {
+    std::vector<Lobe> lobes;
+    for (const Lobe& lobe : bsdf.lobes()) {
+        const auto* own = std::get_if<TableShape>(&lobe.shape);
+        const auto* last = lobes.empty() ? nullptr : std::get_if<TableShape>(&lobes.back().shape);
+        if (own != nullptr && last != nullptr && own->table == last->table && own->channel == last->channel + 1) {
+            lobes.back().color += lobe.color;
+            lobes.back().shape = lobe.shape;
+        } else {
+            lobes.push_back(lobe);
+        }
+    }
+    return lobes;
+}
+
 /// The lobes, each times its colour; a lobe under another is dimmed by what that reflects at the view.
 std::string repr(const Bsdf& bsdf) {
     std::ostringstream text;
     text.precision(3);
     const char* before = "Bsdf(";
-    for (const Lobe& lobe : bsdf.lobes()) {
+    for (const Lobe& lobe : lobes_to_show(bsdf)) {
         const Rgb& c = lobe.color;
         text << before << described(lobe.shape) << " * (" << c.x << ", " << c.y << ", " << c.z << ")"
              << (lobe.weight ? " under a layer" : "");

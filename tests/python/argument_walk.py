@@ -307,6 +307,7 @@ RELATED = {
     "aperture_size": ("focus_distance",),
     "centers": ("radii",),
     "emission": ("material_names",),
+    "f0": ("roughness",),
     "eye": ("target", "up"),
     "clip_start": ("clip_end",),
     "half_axes_u": ("half_axes_v", "centers"),

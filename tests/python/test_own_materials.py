@@ -112,6 +112,15 @@ def test_a_function_is_reflected_within_twice_its_residual(
         assert residual <= 2 * error + 0.01
 
 
+def test_a_table_is_printed_as_one_lobe() -> None:
+    angles = {"theta_in": [0.0, 1], "phi_in": [0.0], "theta_out": [0.0, 1], "phi_out": [0.0]}
+    grey, colored = (Bsdf.from_table(np.ones((2, 1, 2, 1, *channels)), **angles) for channels in ((), (3,)))
+    assert repr(colored * [0.5, 1, 2]) == "Bsdf(table * (0.5, 1, 2))"
+    assert repr(grey + Bsdf.lambert(0.5) + colored + colored) == (
+        "Bsdf(table * (1, 1, 1) + lambert * (0.5, 0.5, 0.5) + table * (1, 1, 1) + table * (1, 1, 1))"
+    )
+
+
 @pytest.mark.parametrize("which", ["isotropic", "anisotropic"])
 def test_lights_under_a_function(which: str, request: pytest.FixtureRequest) -> None:
     f = ISOTROPIC if which == "isotropic" else ANISOTROPIC

@@ -495,21 +495,25 @@ def test_errors_of_coefficients_are_those_that_shadow_rays_leave() -> None:
         scene.light_coefficients(points, normals, 3, rays=1, return_error=True)
 
 
-LONG: dict[str, tuple[Any, ...]] = {"irradiance": (), "light_coefficients": (6,), "radiance": ()}
+LONG: dict[str, dict[str, Any]] = {
+    "irradiance": {"bounce_rays": 1024},
+    "light_coefficients": {"order": 6, "bounce_rays": 1024},
+    "radiance": {"noise_threshold": 0, "max_samples": 256},
+}
 
 
 @pytest.mark.parametrize("method", LONG)
 def test_long_queries_tell_their_progress_and_can_be_cancelled(method: str) -> None:
     points, normals = floor_points(20_000, seed=16)
     scene = lit_scene()
-    query, rest = getattr(scene, method), LONG[method]
-    given: dict[str, Any] = {"max_bounces": 1}
+    query = getattr(scene, method)
+    given: dict[str, Any] = {"max_bounces": 1, **LONG[method]}
     shares: list[float] = []
 
     def count(share: float) -> None:
         shares.append(share)
 
-    query(points[:2000], normals[:2000], *rest, progress=count, **given)
+    query(points[:2000], normals[:2000], progress=count, **given)
     assert shares == sorted(shares)
     assert shares[-1] == 1
     assert len(shares) > 2
@@ -520,11 +524,11 @@ def test_long_queries_tell_their_progress_and_can_be_cancelled(method: str) -> N
         return len(shares) < 3
 
     with pytest.raises(shlight.RenderCancelled):
-        query(points, normals, *rest, progress=end, **given)
+        query(points, normals, progress=end, **given)
     assert shares[-1] < 1
 
     def fail(share: float) -> bool:
         raise KeyError("stop")
 
     with pytest.raises(KeyError):
-        query(points, normals, *rest, progress=fail, **given)
+        query(points, normals, progress=fail, **given)
