@@ -25,6 +25,7 @@ from shlight._core import (  # noqa: E402
     RenderReport,
     Scene,
     SceneMesh,
+    View,
 )
 from shlight.bsdfs import Bsdfs  # noqa: E402
 from shlight.cameras import look_at  # noqa: E402
@@ -45,7 +46,7 @@ from shlight.queries import Hits, shading_frames  # noqa: E402
 from shlight.rendering import RenderResult, render  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
-for _kind in (Bsdf, Light, Scene, SceneMesh):
+for _kind in (Bsdf, Light, Scene, SceneMesh, View):
     explain_methods(_kind)
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ __all__ = [
     "Scene",
     "SceneMesh",
     "SphereGradient",
+    "View",
     "cap_coefficients",
     "contract",
     "denoise",

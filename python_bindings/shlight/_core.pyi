@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from shlight.nodes.shader import Shader
 from shlight.nodes.values import Number, Value, Varying, Vector
 from shlight.queries import Hits
+from shlight.rendering import RenderResult
 
 _Floats = NDArray[Any]
 DEFAULT_TOLERANCE: float
@@ -333,6 +334,15 @@ class Light:
     def group(self, value: str | None) -> None: ...
     def remove(self) -> None: ...
 
+class View:
+    def relight(
+        self, *, noise_threshold: float | None = None, progress: Callable[[float], object] | None = None
+    ) -> RenderResult: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+
 class Scene:
     def __init__(self) -> None: ...
     def __copy__(self) -> Scene: ...
@@ -425,6 +435,22 @@ class Scene:
         visible: bool = True,
         group: str | None = None,
     ) -> None: ...
+    def view(
+        self,
+        width: int,
+        height: int,
+        *,
+        order: Literal["auto"] | int = "auto",
+        tolerance: float = ...,
+        pixel_samples: int = 1,
+        pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
+        filter_width: float = 1.5,
+        shadows: bool = True,
+        shadow_rays: int = 4,
+        transparent_bounces: int = 8,
+        threads: int = 0,
+        seed: int = 0,
+    ) -> View: ...
     def intersect(self, origins: ArrayLike, directions: ArrayLike, *, threads: int = 0) -> Hits: ...
     @overload
     def irradiance(

@@ -90,9 +90,9 @@ def denoise(
 
 def _checked_picture(name: str, value: ArrayLike, size: tuple[int, ...] | None) -> Floats:
     array = checked_array(name, value, np.float32)
-    check_finite(name, array)
     if array.ndim != 3 or array.size == 0 or (size is None and array.shape[2] < 3):
         raise ValueError(f"{name} must have shape (height, width, channels), got {array.shape}")
+    check_finite(name, array, 1)
     if size is not None:
         check_last(name, array, 3)
         if array.shape[:2] != size:

@@ -15,7 +15,6 @@
 #include <numeric>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <tuple>
 
 #include "arguments.h"
@@ -146,8 +145,6 @@ Report report_from(const ReportState& state) {
 /// RenderSettings() is direct light; a picture has more.
 constexpr int kDefaultBounces = 4;
 
-constexpr std::array<std::string_view, 3> kFilters = {"box", "gaussian", "blackman_harris"};  // by PixelFilter::Kind
-
 /// Sampling settings from arguments with the same names; None keeps the default.
 PixelSampling sampling_from(const py::object& noise_threshold, const py::object& min_samples,
                             const py::object& max_samples, const py::object& pixel_samples,
@@ -177,15 +174,6 @@ PixelSampling sampling_from(const py::object& noise_threshold, const py::object&
     return sampling;
 }
 
-PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter_width) {
-    const auto name = py::isinstance<py::str>(pixel_filter) ? pixel_filter.cast<std::string>() : std::string();
-    const auto* known = std::find(kFilters.begin(), kFilters.end(), name);
-    if (known == kFilters.end()) {
-        throw std::invalid_argument(R"(pixel_filter must be "box", "gaussian" or "blackman_harris")");
-    }
-    return {static_cast<PixelFilter::Kind>(known - kFilters.begin()), real_from("filter_width", filter_width)};
-}
-
 /// A PictureUpdate that calls a Python callback, or none for None; keeps a reference to the callback.
 PictureUpdate update_from(const py::object& callback, int width, int height, float exposure, double build_seconds) {
     if (callback.is_none()) {
@@ -197,21 +185,6 @@ PictureUpdate update_from(const py::object& callback, int width, int height, flo
         expose(copy, 0, 3, exposure);
         return !is_false(callback(copy, Report{report, build_seconds, {}}));
     };
-}
-
-/// Why a picture is black, as far as it is for want of light; empty if it is not.
-std::string darkness(const CompiledScene& scene, std::span<const float> pixels, std::uint64_t hits) {
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        if (i % 4 != 3 && pixels[i] != 0) {
-            return {};
-        }
-    }
-    if (scene.lights().empty() && scene.environment().is_black()) {
-        return "the scene has no light";
-    }
-    return hits == 0 ? std::string()
-                     : "no light reaches what the camera sees; polygon lights shine to the side that sees their "
-                       "vertices counter-clockwise, disk lights along half_axis_u x half_axis_v";
 }
 
 py::tuple render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
@@ -261,13 +234,32 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
                         {values.mutable_data(), static_cast<std::size_t>(values.size())});
     }
-    const std::string dark = darkness(*compiled_scene, pixels, report.hits);
+    const py::object told = report_of(report, build_seconds, *compiled_scene, pixels);
     expose(image, 0, 3, light_factor);
     expose_light(settings.passes, values, light_factor);
-    return py::make_tuple(pass_dict(settings.passes, scene, image, values), Report{report, build_seconds, dark});
+    return py::make_tuple(pass_dict(settings.passes, scene, image, values), told);
+}
+
+std::string darkness(const CompiledScene& scene, std::span<const float> pixels, std::uint64_t hits) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        if (i % 4 != 3 && pixels[i] != 0) {
+            return {};
+        }
+    }
+    if (scene.lights().empty() && scene.environment().is_black()) {
+        return "the scene has no light";
+    }
+    return hits == 0 ? std::string()
+                     : "no light reaches what the camera sees; polygon lights shine to the side that sees their "
+                       "vertices counter-clockwise, disk lights along half_axis_u x half_axis_v";
 }
 
 }  // namespace
+
+py::object report_of(const RenderReport& report, double build_seconds, const CompiledScene& scene,
+                     std::span<const float> pixels) {
+    return py::cast(Report{report, build_seconds, darkness(scene, pixels, report.hits)});
+}
 
 void bind_render(py::module_& m) {
     py::register_exception<RenderCancelled>(m, "RenderCancelled", PyExc_RuntimeError);

@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "render_calls.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "arguments.h"
 #include "chunks.h"
-#include "shlight/render.h"
 
 namespace shlight::python {
 
 namespace py = pybind11;
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kFilters = {"box", "gaussian", "blackman_harris"};  // by PixelFilter::Kind
+
+}  // namespace
 
 bool is_false(const py::object& value) {
     return (PyBool_Check(value.ptr()) != 0 || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) &&
@@ -51,6 +59,15 @@ int bounces_from(const char* name, const py::object& bounces) {
 
 std::uint32_t seed_from(const py::object& seed) {
     return static_cast<std::uint32_t>(integer_from("seed", seed, 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter_width) {
+    const auto name = py::isinstance<py::str>(pixel_filter) ? pixel_filter.cast<std::string>() : std::string();
+    const auto* known = std::find(kFilters.begin(), kFilters.end(), name);
+    if (known == kFilters.end()) {
+        throw std::invalid_argument(R"(pixel_filter must be "box", "gaussian" or "blackman_harris")");
+    }
+    return {static_cast<PixelFilter::Kind>(known - kFilters.begin()), real_from("filter_width", filter_width)};
 }
 
 const Camera& camera_of(const SceneObject& scene) {

@@ -276,6 +276,7 @@ void bind_scene(py::module_& m) {
     bind_cameras(scene);
     bind_lights(m, scene);
     bind_queries(scene);
+    bind_views(m, scene);
 }
 
 }  // namespace shlight::python

@@ -61,5 +61,7 @@ void bind_cameras(pybind11::class_<SceneObject>& scene);
 void bind_lights(pybind11::module_& m, pybind11::class_<SceneObject>& scene);
 /// Scene.intersect and its like.
 void bind_queries(pybind11::class_<SceneObject>& scene);
+/// Scene.view.
+void bind_views(pybind11::module_& m, pybind11::class_<SceneObject>& scene);
 
 }  // namespace shlight::python

@@ -148,6 +148,12 @@ OF_RADIANCE = (
 )
 
 
+OF_VIEW = (
+    *("order", "tolerance", "pixel_samples", "pixel_filter", "filter_width", "shadows", "shadow_rays"),
+    *("transparent_bounces", "seed"),
+)
+
+
 def new_scene() -> shlight.Scene:
     scene = shlight.Scene()
     scene.add_mesh(TRIANGLE, FACES)
@@ -221,6 +227,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "progress": None,
         },
     ),
+    "Scene.view": (
+        of_scene("view"),
+        {"width": 4, "height": 3, "threads": 1, **{name: SETTINGS[name] for name in OF_VIEW}},
+    ),
+    "View.relight": (new_scene().view(4, 3).relight, {"noise_threshold": 0.5, "progress": None}),
     "Light.remove": (lambda: shlight.Scene().add_point_light([0, 0, 1], RGB).remove(), {}),
     "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in OF_MATERIALS}),
     "SceneMesh.set_transforms": (of_mesh("set_transforms"), {name: MESH[name] for name in OF_PLACES}),

@@ -15,7 +15,9 @@
 namespace shlight {
 
 /// Factor 1 in all directions.
-struct EvenProfile {};
+struct EvenProfile {
+    bool operator==(const EvenProfile&) const = default;
+};
 
 /// A cone with a soft rim: with z the cosine of the angle to the cone's axis, smoothstep((z - c) / ((1 - c) blend)),
 /// and 0 for z ≤ c. A spot lamp of Blender (Cycles, spot_light_attenuation).
@@ -25,6 +27,8 @@ struct SpotProfile {
     double cosine;        ///< c, cosine of half the cone's angle, 0 ≤ c < 1
     double blend;         ///< 0 … 1: the share of 1 - c over which the rim fades
     bool times_cosine;    ///< multiplies by z, as spot lamps before Blender 4
+
+    bool operator==(const SpotProfile&) const = default;
 };
 
 /// A panel behind a honeycomb grid: max(tan h - tan α, 0) / (tan h - h), with α the angle to the panel's normal and h
@@ -34,12 +38,16 @@ struct SpreadProfile {
     double half_angle;  ///< h, 0 < h < π/2
     double tangent;     ///< tan h
     double scale;       ///< 1 / (tan h - h)
+
+    bool operator==(const SpreadProfile&) const = default;
 };
 
 /// A sun of constant radiance on the plane tangent to the sphere of directions at the sun's centre: 1 / cos³α, with α
 /// the angle to its axis. Sun lamps before Blender 4.
 struct TangentProfile {
     Vec3d axis;  ///< unit, direction in which the light travels
+
+    bool operator==(const TangentProfile&) const = default;
 };
 
 using EmissionProfile = std::variant<EvenProfile, SpotProfile, SpreadProfile, TangentProfile>;

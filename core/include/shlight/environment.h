@@ -35,6 +35,8 @@ class Environment {
     explicit Environment(LatLong picture);
 
     bool is_black() const;
+    /// The same radiance, or the same picture in memory.
+    bool operator==(const Environment&) const = default;
     /// direction: a unit vector of the world frame that points away from the scene.
     Rgb radiance(const Vec3d& direction) const;
     /// This environment with map(), which takes seconds for a large picture. before: an environment that may have the

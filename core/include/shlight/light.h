@@ -24,6 +24,8 @@ struct LightTraits {
     bool seen_by_camera = false;  ///< camera rays that meet it gain its radiance; it hides nothing
     bool is_surface = false;      ///< rays meet it as a surface of a mesh
     std::uint32_t group = 0;      ///< light group, whose light a render can output separately; 0: none
+
+    bool operator==(const LightTraits&) const = default;
 };
 
 /// A sphere, or a disk that always faces the shading point: caps of half angle asin(R/d) and atan(R/d).
@@ -33,6 +35,8 @@ struct SphereLight {
     Rgb radiance;
     bool facing_disk;
     LightTraits traits = {};
+
+    bool operator==(const SphereLight&) const = default;
 };
 
 /// A planar polygon. One-sided ones shine to the side from which the vertices run counter-clockwise.
@@ -47,6 +51,8 @@ struct PolygonLight {
     double error;    ///< bound of the distance between this plane and the mesh face that rays in float meet
     bool rectangle;  ///< four vertices and right angles
     LightTraits traits = {};
+
+    bool operator==(const PolygonLight&) const = default;
 };
 
 /// A disk or an ellipse: center + a half_axis_u + b half_axis_v, a² + b² ≤ 1, with any two conjugate half axes.
@@ -59,6 +65,8 @@ struct DiskLight {
     double radius;  ///< long half axis
     double error;   ///< see PolygonLight
     LightTraits traits = {};
+
+    bool operator==(const DiskLight&) const = default;
 };
 
 /// A cap of directions: a disk infinitely far away.
@@ -67,6 +75,8 @@ struct SunLight {
     double half_angle;  ///< [rad], 0 < half_angle ≤ π/2
     Rgb radiance;
     LightTraits traits = {};
+
+    bool operator==(const SunLight&) const = default;
 };
 
 /// A sphere light in the limit of radius 0.
@@ -74,6 +84,8 @@ struct PointSource {
     Vec3d position;
     Rgb intensity;  ///< [W sr⁻¹]
     LightTraits traits = {};
+
+    bool operator==(const PointSource&) const = default;
 };
 
 /// A sun in the limit of angle 0.
@@ -81,6 +93,8 @@ struct ParallelSource {
     Vec3d direction;  ///< unit, towards it
     Rgb irradiance;   ///< [W m⁻²] on a perpendicular surface
     LightTraits traits = {};
+
+    bool operator==(const ParallelSource&) const = default;
 };
 
 struct EmitterLevels;
@@ -97,6 +111,8 @@ struct MeshLight {
     LightTraits traits = {};
     FaceSide side = FaceSide::both;      ///< that shines; of `shape` it is the outer one
     glm::dmat3 to_mesh = glm::dmat3(1);  ///< from the world to the mesh's frame
+
+    bool operator==(const MeshLight&) const = default;
 
     /// Whether it is what a ray in this direction meets, on a side that shines.
     bool shines_at(const RayHit& hit, const Vec3f& direction) const;

@@ -129,8 +129,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       previews(preview_points),
       filter_places(pixel_points.size()),
       takes_differences(std::any_of(s.materials().begin(), s.materials().end(), shlight::takes_differences)),
-      lighting(s.lights(), s.extended_light_count(), s.environment(), s.environment_group(),
-               lobes_of_materials(s.materials(), r.order, r.tolerance, stopped), r.order, r.tolerance) {
+      lighting(s, lobes_of_materials(s.materials(), r.order, r.tolerance, stopped), r.order, r.tolerance) {
     std::transform(pixel_points.begin(), pixel_points.end(), filter_places.begin(), [&](const glm::dvec2& point) {
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });
@@ -184,7 +183,7 @@ PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
                      std::span<PixelSums> sums, std::span<double> pass_sums) {
     StageClock clock(report_);
-    trace_camera_rays(pixels, samples);
+    trace(pixels, samples, hits_, ray_light_);
     if (surface_passes_.any_mean()) {
         surface_passes_.add(surfaces_, rays_.size(), samples.count, pass_sums);
     }
@@ -210,7 +209,7 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
 
 Pilot PixelBatch::pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
     const SampleRange first = {0, 1, shadow_rays, 0};
-    trace_camera_rays(pixels, first);
+    trace(pixels, first, hits_, ray_light_);
     lighting_.add(pixel_seeds_, penumbrae_, first, hits_, report_);
     Pilot pilot;
     for (const Rgb& radiance : hits_.radiance) {
@@ -231,7 +230,8 @@ PixelBatch::LensPoint PixelBatch::lens_point(std::uint32_t sample, std::uint32_t
                : std::nullopt;
 }
 
-void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
+void PixelBatch::trace(std::span<const Pixel> pixels, const SampleRange& samples, Hits& hits,
+                       std::vector<RayLight>& light) {
     rays_.clear();
     neighbours_.clear();
     seed_pixels(pixels);
@@ -244,7 +244,7 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
             add_ray(middle + picture_->filter_places[i], lens_point(i, pixel_seeds_[p]), i, pixel_seeds_[p], step);
         }
     }
-    surfaces_.trace(rays_, neighbours_, samples.count, hits_, ray_light_);
+    surfaces_.trace(rays_, neighbours_, samples.count, hits, light);
     report_.hits += surfaces_.hit_count();
     report_.mirror_count += surfaces_.mirror_count();
 }

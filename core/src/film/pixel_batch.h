@@ -103,6 +103,10 @@ class PixelBatch {
     /// leaves out; pass_sums: pixels × layout.stride(), as PassImage::merge takes them.
     void add(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
              std::span<PixelSums> sums, std::span<double> pass_sums);
+    /// Traces these camera rays of each pixel, and shades nothing. light: of each ray.
+    void trace(std::span<const Pixel> pixels, const SampleRange& samples, Hits& hits, std::vector<RayLight>& light);
+    /// One of each pixel of the last call, see DirectLighting.
+    std::span<const std::uint32_t> pixel_seeds() const { return pixel_seeds_; }
     /// Lets light bounce from now on.
     void follow(const PathSettings& paths) { surfaces_.follow(paths); }
     /// Passes of the ray through the middle of each pixel. values: pixels × layout.stride().
@@ -115,7 +119,6 @@ class PixelBatch {
     /// A point of the unit square; none: the aperture's middle.
     using LensPoint = std::optional<glm::dvec2>;
 
-    void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     /// place: in pixels; step: to its neighbours.
     void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, std::uint32_t seed, double step);
     void seed_pixels(std::span<const Pixel> pixels);

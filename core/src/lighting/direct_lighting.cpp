@@ -34,6 +34,11 @@ std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> material
     return lobes;
 }
 
+LightingScene::LightingScene(const CompiledScene& scene, std::vector<MaterialLobes> lobes, int order,
+                             double error_tolerance)
+    : LightingScene(scene.lights(), scene.extended_light_count(), scene.environment(), scene.environment_group(),
+                    std::move(lobes), order, error_tolerance) {}
+
 LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
                              std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order,
                              double error_tolerance)
@@ -70,18 +75,41 @@ DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays
 void DirectLighting::add(std::span<const std::uint32_t> seeds, std::span<const std::uint32_t> penumbrae,
                          const SampleRange& samples, Hits& hits, RenderReport& report) {
     StageClock clock(report);
-    points_.assign(hits, scene_->materials, scene_->extended, scene_->deltas, scene_->tolerance);
+    own_points_.assign(hits, scene_->materials, scene_->extended, scene_->deltas, scene_->tolerance);
     clock.end(RenderStage::views);
+    find(own_points_, report);
+    share_out(penumbrae, {});
+    add({0, scene_->extended.size(), &scene_->deltas, true}, seeds, samples, hits, report);
+}
+
+void DirectLighting::find(const ShadingPoints& points, RenderReport& report) {
+    StageClock clock(report);
+    points_ = &points;
     find_unshadowed(report);
-    budget_.start(points_, lights_, penumbrae);
     clock.end(RenderStage::light);
-    add_shadowed(seeds, samples, hits, report);
+}
+
+void DirectLighting::share_out(std::span<const std::uint32_t> penumbrae, std::span<const float> others) {
+    budget_.start(*points_, lights_, penumbrae);
+    for (std::size_t group = 0; group < others.size(); ++group) {
+        budget_.all()[group] += others[group];
+    }
+}
+
+void DirectLighting::add(const LightSelection& lights, std::span<const std::uint32_t> seeds, const SampleRange& samples,
+                         Hits& hits, RenderReport& report) {
+    StageClock clock(report);
+    if (lights.deltas != nullptr && lights.deltas->padded_size() > 0) {
+        shadowed_deltas_.add(*lights.deltas, *points_, samples.shadow_rays > 0,
+                             seeds_of(seeds, hash(kDeltaSeed, samples.first_point)), hits, budget_.all(), report);
+    }
+    add_extended(lights, samples, seeds_of(seeds, kLightSeed), hits);
     clock.end(RenderStage::shadows);
     tracer_.move_to(report);
 }
 
 void DirectLighting::find_unshadowed(RenderReport& report) {
-    unshadowed_.compute(points_, scene_->materials, scene_->extended, scene_->light_error, scene_->face_tolerance,
+    unshadowed_.compute(*points_, scene_->materials, scene_->extended, scene_->light_error, scene_->face_tolerance,
                         report);
     lights_.clear();
     for (std::size_t i = 0; i < scene_->extended.size(); ++i) {
@@ -89,7 +117,7 @@ void DirectLighting::find_unshadowed(RenderReport& report) {
         lights_.push_back({unshadowed_.light(i), {}, traits.group, traits.casts_shadows});
     }
     if (scene_->environment_shading) {
-        scene_->environment_shading->shade(points_, environment_, report);
+        scene_->environment_shading->shade(*points_, environment_, report);
         lights_.push_back({{{}, Rgb(1), environment_.smooth},
                            {{}, Rgb(1), environment_.spots},
                            scene_->environment_group,
@@ -98,26 +126,18 @@ void DirectLighting::find_unshadowed(RenderReport& report) {
     }
 }
 
-void DirectLighting::add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
-                                  RenderReport& report) {
-    if (scene_->deltas.padded_size() > 0) {
-        shadowed_deltas_.add(scene_->deltas, points_, samples.shadow_rays > 0,
-                             seeds_of(seeds, hash(kDeltaSeed, samples.first)), hits, budget_.all(), report);
-    }
-    add_extended(samples, seeds_of(seeds, kLightSeed), hits);
-}
-
-void DirectLighting::add_extended(const SampleRange& samples, std::span<const std::uint32_t> seeds, Hits& hits) {
+void DirectLighting::add_extended(const LightSelection& lights, const SampleRange& samples,
+                                  std::span<const std::uint32_t> seeds, Hits& hits) {
     const std::size_t count = scene_->extended.size();
-    shared_.start(scene_->extended, std::span(lights_).first(count), samples);
-    shadowed_.start(points_, samples, seeds);
-    for (std::size_t i = 0; i < count; ++i) {
+    shared_.start(scene_->extended, std::span(lights_).first(count), samples, lights.begin, lights.end);
+    shadowed_.start(*points_, samples, seeds);
+    for (std::size_t i = lights.begin; i < lights.end; ++i) {
         light_target_.set(scene_->extended[i]);
         shadowed_.add(
             light_target_, lights_[i], i, [&](std::size_t group) { return shared_.is_dim(i, group); }, hits);
     }
-    shared_.add(points_, seeds, hits);
-    if (lights_.size() > count) {
+    shared_.add(*points_, seeds, hits);
+    if (lights.environment && lights_.size() > count) {
         shadowed_.add(
             environment_target_, lights_[count], count, [](std::size_t) { return false; }, hits);
     }

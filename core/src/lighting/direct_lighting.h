@@ -31,6 +31,7 @@
 #include "shlight/mesh.h"
 #include "shlight/parallel.h"
 #include "shlight/render_report.h"
+#include "shlight/scene.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
@@ -42,6 +43,8 @@ std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> material
 
 /// The lights and materials of a scene, prepared for DirectLighting. Any number of threads may read it.
 struct LightingScene {
+    /// The scene must outlive this.
+    LightingScene(const CompiledScene& scene, std::vector<MaterialLobes> lobes, int order, double error_tolerance);
     /// all: the lights, those with extent first; order, error_tolerance: of RenderSettings. All but lobes must outlive
     /// this.
     LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
@@ -59,8 +62,15 @@ struct LightingScene {
     double tolerance;
     double light_error = 0;                                 ///< see UnshadowedRadiance::compute
     double face_tolerance = 0;                              ///< likewise
-    std::unique_ptr<const SkyGuide> sky_guide;              ///< may be null
+    std::shared_ptr<const SkyGuide> sky_guide;              ///< may be null
     std::optional<EnvironmentShading> environment_shading;  ///< none: the environment is black
+};
+
+/// Some of the lights of a LightingScene.
+struct LightSelection {
+    std::size_t begin, end;     ///< of those with extent
+    const DeltaLights* deltas;  ///< of those without, or others like them; null: none
+    bool environment;
 };
 
 /// Keeps its memory from call to call; one per thread.
@@ -80,18 +90,30 @@ class DirectLighting {
     void add(std::span<const std::uint32_t> seeds, std::span<const std::uint32_t> penumbrae, const SampleRange& samples,
              Hits& hits, RenderReport& report);
 
+    // The same in steps, for callers that keep the points of hits, or the light of some lights apart.
+    /// Finds the light of all lights without shadows.
+    void find(const ShadingPoints& points, RenderReport& report);
+    /// Shares out the shadow rays. others: brightness of each group by lights that are not among the scene's, as in
+    /// ShadowBudget, or empty.
+    void share_out(std::span<const std::uint32_t> penumbrae, std::span<const float> others);
+    /// Adds the light of some of them to hits that have these points, after share_out().
+    void add(const LightSelection& lights, std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
+             RenderReport& report);
+    /// Since the last find(): the lights with extent, then the environment, unless it is black.
+    std::span<const UnshadowedLight> unshadowed() const { return lights_; }
+
   private:
     /// Light of all kinds but sources without extent, whose shadows are found along with it.
     void find_unshadowed(RenderReport& report);
-    void add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
-                      RenderReport& report);
-    void add_extended(const SampleRange& samples, std::span<const std::uint32_t> seeds, Hits& hits);
+    void add_extended(const LightSelection& lights, const SampleRange& samples, std::span<const std::uint32_t> seeds,
+                      Hits& hits);
     /// One seed of each group for a kind of light.
     std::span<const std::uint32_t> seeds_of(std::span<const std::uint32_t> seeds, std::uint32_t kind);
 
     const LightingScene* scene_;
     ShadowTracer tracer_;
-    ShadingPoints points_;
+    ShadingPoints own_points_;
+    const ShadingPoints* points_ = nullptr;  // of the last find()
     UnshadowedRadiance unshadowed_;
     UnshadowedParts environment_;
     std::vector<UnshadowedLight> lights_;  // those with extent, then the environment, unless it is black

@@ -64,6 +64,7 @@ void LobeIntegrator::begin(const LobeViews& lobe, std::size_t count) {
     values_.resize(count);
     efforts_.resize(count);
     same_lobe_ = shades_alike(lobe);
+    only_order_ = same_lobe_ ? lobe.order(0) : 0;
 }
 
 template <class Lights>

@@ -40,6 +40,8 @@ class LobeIntegrator {
     std::span<const float> values() const { return values_; }
     /// The order, or number of values of f·cos, that each took; 0 where it is hidden or mirrored, or the lobe black.
     std::span<const std::int32_t> efforts() const { return efforts_; }
+    /// The order that all lights took which are not hidden; 0: they took different ways.
+    int only_order() const { return only_order_; }
     LobeMethod method(std::size_t light) const;
     /// Whether a light kept within the tolerance, by what its way estimates; only if the lobe, as given, was judged.
     bool within_tolerance(const LobeViews& lobe, std::size_t light, std::size_t view) const;
@@ -97,6 +99,7 @@ class LobeIntegrator {
     std::vector<std::int32_t> efforts_;
 
     bool same_lobe_ = false;
+    int only_order_ = 0;                        // see only_order()
     std::vector<std::uint8_t> rules_, missed_;  // missed_: the tolerance
     std::vector<Key> keys_;
     std::vector<std::uint32_t> sorted_;             // lights by key

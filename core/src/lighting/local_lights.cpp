@@ -49,6 +49,40 @@ void LocalLights::look(const Light& light, const ShadingFrame& frame, double err
     }
 }
 
+void LocalLights::look(const Light& light, std::span<const ShadingFrame> frames, std::span<const double> errors,
+                       std::span<const std::uint32_t> some, double tolerance) {
+    const auto* sphere = std::get_if<SphereLight>(&light);
+    if (sphere != nullptr && !sphere->facing_disk && std::holds_alternative<EvenProfile>(sphere->traits.profile) &&
+        look_from_outside(*sphere, frames, some)) {
+        return;
+    }
+    for (std::uint32_t i = 0; i < some.size(); ++i) {
+        look(light, frames[some[i]], errors[some[i]], tolerance, i);
+    }
+}
+
+bool LocalLights::look_from_outside(const SphereLight& light, std::span<const ShadingFrame> frames,
+                                    std::span<const std::uint32_t> some) {
+    centers_.resize(some.size());
+    cap_numbers_.resize(some.size());
+    std::size_t count = 0;
+    bool inside = false;
+    for (std::uint32_t i = 0; i < some.size(); ++i) {
+        const Vec3d center = frames[some[i]].point_to_local(light.center);
+        inside |= glm::length(center) <= light.radius;
+        centers_[count] = center;
+        cap_numbers_[count] = i;
+        count += center.z + light.radius > 0 ? 1 : 0;
+    }
+    cap_numbers_.resize(inside ? 0 : count);
+    centers_.resize(count);
+    radii_.assign(count, light.radius);
+    if (!inside) {
+        circles_.set_spheres(centers_, radii_.data());
+    }
+    return !inside;
+}
+
 void LocalLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {
     const std::size_t first = vertices_.size();
     // The tolerance is relative to the emitter's light, which from afar is little of a surrounding surface's.

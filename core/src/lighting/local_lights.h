@@ -26,6 +26,9 @@ class LocalLights {
     /// Adds what a hit sees of a light, which may be nothing, or several faces of a mesh. number: what the caller knows
     /// the light by; tolerance: of what a mesh gives.
     void look(const Light& light, const ShadingFrame& frame, double error, double tolerance, std::uint32_t number);
+    /// The same of hits some[0], some[1] … by number 0, 1 …
+    void look(const Light& light, std::span<const ShadingFrame> frames, std::span<const double> errors,
+              std::span<const std::uint32_t> some, double tolerance);
     /// Corners in the shading frame, at least one above the horizon.
     void add_polygon(std::span<const Vec3d> corners, std::uint32_t number);
     /// A disk in the shading frame; what lies below the horizon or is seen edge-on is left out.
@@ -83,6 +86,9 @@ class LocalLights {
 
     void shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics,
                        LobeIntegrator& batch);
+    /// The circles of a sphere, unless a hit is within it: then it returns false.
+    bool look_from_outside(const SphereLight& light, std::span<const ShadingFrame> frames,
+                           std::span<const std::uint32_t> some);
     void look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number);
     /// The vertices from `first` on. filled_up: so that few sizes occur.
     void add_polygon(std::size_t first, std::uint32_t number, bool filled_up);

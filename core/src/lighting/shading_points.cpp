@@ -77,12 +77,17 @@ std::size_t ShadingPoints::next_near(const Vec3f& normal, std::size_t point) con
     return point;
 }
 
-bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) const {
+bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point, std::span<const Light> lights,
+                          const DeltaLights& deltas) {
     if (material[point] != hits.material[hit] || path[point] != hits.path[hit]) {
         return false;
     }
     // The point's frame is that of its first hit until all are known.
-    const Members& members = members_[point];
+    Members& members = members_[point];
+    if (!members.knows_nearest) {
+        members.nearest_light = nearest(lights, deltas, frame[point].origin);
+        members.knows_nearest = true;
+    }
     const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
                               glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
                               glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
@@ -90,8 +95,7 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) 
            members.spread;
 }
 
-void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light,
-                          double tolerance) {
+void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double tolerance) {
     frame.push_back(hits.frame[hit]);
     cos_theta_o.push_back(hits.cos_theta_o[hit]);
     error.push_back(hits.error[hit]);
@@ -107,7 +111,7 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     first_y_.push_back(normal.y);
     first_z_.push_back(normal.z);
     nearness_.push_back(static_cast<float>((spread + kNormalRounding) * (spread + kNormalRounding)));
-    members_.push_back({towards_viewer(hits, hit), hits.parameters(hit), narrowest, spread, nearest_light, Vec3d(0),
+    members_.push_back({towards_viewer(hits, hit), hits.parameters(hit), narrowest, spread, 0, false, Vec3d(0),
                         Vec3d(0), Vec3d(0), 0, 0});
 }
 
@@ -147,12 +151,11 @@ void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> mate
         for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
             const Vec3f normal(hits.frame[hit].z);
             std::size_t point = next_near(normal, first_point);
-            while (point < size() && !joins(hits, hit, point)) {
+            while (point < size() && !joins(hits, hit, point, lights, deltas)) {
                 point = next_near(normal, point + 1);
             }
             if (point == size()) {
-                start(hits, hit, materials[hits.material[hit]], nearest(lights, deltas, hits.frame[hit].origin),
-                      tolerance);
+                start(hits, hit, materials[hits.material[hit]], tolerance);
             }
             add_member(hits, hit, point);
         }

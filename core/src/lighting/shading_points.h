@@ -57,7 +57,8 @@ class ShadingPoints {
         std::span<const float> first_parameters;
         double narrowest;      // least distance over which f·cos changes
         double spread;         // allowed difference from the first
-        double nearest_light;  // distance
+        double nearest_light;  // distance, found when a second hit asks for it
+        bool knows_nearest;
         Vec3d position, normal, towards_viewer;
         std::uint32_t count;
         std::size_t first_hit;  // in hits_by_point_
@@ -66,8 +67,9 @@ class ShadingPoints {
     void clear();
     /// The first point from this one on whose normal is not too far from the hit's; size() if there is none.
     std::size_t next_near(const Vec3f& normal, std::size_t point) const;
-    bool joins(const Hits& hits, std::size_t hit, std::size_t point) const;
-    void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light, double tolerance);
+    bool joins(const Hits& hits, std::size_t hit, std::size_t point, std::span<const Light> lights,
+               const DeltaLights& deltas);
+    void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double tolerance);
     void add_member(const Hits& hits, std::size_t hit, std::size_t point);
     void finish(std::size_t point);
     void sort_hits();

@@ -39,8 +39,10 @@ FoundMember find(const Members& members, double share) {
 }  // namespace
 
 void SharedShadowLights::start(std::span<const Light> lights, std::span<const UnshadowedLight> unshadowed,
-                               const SampleRange& samples) {
+                               const SampleRange& samples, std::size_t begin, std::size_t end) {
     lights_ = lights;
+    begin_ = begin;
+    end_ = end;
     unshadowed_ = unshadowed;
     samples_ = samples;
     may_share_.clear();
@@ -60,34 +62,45 @@ void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::u
     points_ = &points;
     radiance_.assign(points.size(), Rgb(0));
     apart_.reset(points.size());
-    for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        const double rays = gather(pixel);
-        if (dim_.empty()) {
-            continue;
-        }
-        const auto hit_count = static_cast<double>(hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel]);
-        request(pixel, static_cast<std::size_t>(std::ceil(rays * hit_count)),
-                hash(hash(seeds[pixel], samples_.first), kSharedSeed), hits);
-        if (rays_.size() >= kRaysTogether) {
-            finish(hits);
+    for (std::size_t first = 0; first < hits.pixel_count(); first += kPixelsAtOnce) {
+        const std::span some = std::span(gathered_).first(std::min(kPixelsAtOnce, hits.pixel_count() - first));
+        gather(first, some);
+        for (std::size_t pixel = first; pixel < first + some.size(); ++pixel) {
+            const DimLights& own = some[pixel - first];
+            dim_ = own.members;
+            if (dim_.empty()) {
+                continue;
+            }
+            const auto hit_count = static_cast<double>(hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel]);
+            request(pixel, static_cast<std::size_t>(std::ceil(own.rays * hit_count)),
+                    hash(hash(seeds[pixel], samples_.first_point), kSharedSeed), hits);
+            if (rays_.size() >= kRaysTogether) {
+                finish(hits);
+            }
         }
     }
     finish(hits);
 }
 
-double SharedShadowLights::gather(std::size_t pixel) {
-    dim_.clear();
-    float sum = 0;
-    double rays = 0;
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-        const float own = budget_->of_group(i, pixel);
-        if (own > 0 && is_dim(i, pixel)) {
-            sum += own;
-            rays += budget_->rays(i, pixel, samples_);
-            dim_.push_back({i, sum});
+/// Light by light, as the budget is stored.
+void SharedShadowLights::gather(std::size_t first, std::span<DimLights> pixels) const {
+    for (DimLights& dim : pixels) {
+        dim.members.clear();
+        dim.rays = 0;
+    }
+    for (std::size_t i = begin_; i < end_; ++i) {
+        for (std::size_t k = 0; may_share_[i] != 0 && samples_.shadow_rays > 0 && k < pixels.size(); ++k) {
+            const float own = budget_->of_group(i, first + k);
+            if (!(own > 0)) {
+                continue;
+            }
+            if (const float rays = budget_->rays(i, first + k, samples_); rays < 1) {
+                std::vector<Member>& members = pixels[k].members;
+                members.push_back({i, own + (members.empty() ? 0 : members.back().up_to)});
+                pixels[k].rays += double{rays};
+            }
         }
     }
-    return rays;
 }
 
 void SharedShadowLights::request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits) {
@@ -166,19 +179,26 @@ Rgb SharedShadowLights::value(std::size_t sample, const Hits& hits) const {
 
 void SharedShadowLights::add_unblocked(std::size_t pixel) {
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
-        for (const Member& member : dim_) {
-            const UnshadowedLight& unshadowed = unshadowed_[member.index];
-            const std::uint32_t group = traits_of(lights_[member.index]).group;
+        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+            const Rgb& weight = points_->weight(point, lobe);
             Rgb sum(0);
-            for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-                const Rgb own = points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
-                sum += own;
-                if (!apart_.empty()) {
-                    apart_.add(point, apart_.parts().kind(points_->material[point], lobe, points_->path[point]), group,
-                               own);
-                }
+            for (const Member& member : dim_) {
+                sum += unshadowed_[member.index][lobe * points_->size() + point];
             }
-            radiance_[point] += sum;
+            radiance_[point] += weight * sum;
+        }
+        if (!apart_.empty()) {
+            add_parts(point);
+        }
+    }
+}
+
+void SharedShadowLights::add_parts(std::size_t point) {
+    for (const Member& member : dim_) {
+        const std::uint32_t group = traits_of(lights_[member.index]).group;
+        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+            apart_.add(point, apart_.parts().kind(points_->material[point], lobe, points_->path[point]), group,
+                       points_->weight(point, lobe) * unshadowed_[member.index][lobe * points_->size() + point]);
         }
     }
 }

@@ -39,8 +39,10 @@ class SharedShadowLights {
           apart_(parts),
           terminator_(materials) {}
 
-    /// To be called before the first of these lights, which the budget knows: they are referred to by number.
-    void start(std::span<const Light> lights, std::span<const UnshadowedLight> unshadowed, const SampleRange& samples);
+    /// To be called before the first of these lights, which the budget knows: they are referred to by number. begin,
+    /// end: of those that are added.
+    void start(std::span<const Light> lights, std::span<const UnshadowedLight> unshadowed, const SampleRange& samples,
+               std::size_t begin, std::size_t end);
     bool is_dim(std::size_t light, std::size_t pixel) const;
     /// Adds the dim ones to the hits' radiance. points: of the hits; seeds: one per group.
     void add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits);
@@ -68,9 +70,14 @@ class SharedShadowLights {
         LightBits lights;
     };
 
-    /// The dim lights of a pixel; returns the rays that a hit has for all of them.
-    double gather(std::size_t pixel);
-    /// Draws shadow samples for the gathered lights.
+    /// The dim lights of a pixel.
+    struct DimLights {
+        std::vector<Member> members;
+        double rays = 0;  // that a hit has for all of them
+    };
+    /// Finds the dim lights of some pixels.
+    void gather(std::size_t first, std::span<DimLights> pixels) const;
+    /// Draws shadow samples for the lights of dim_.
     void request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits);
     /// How bright points of a pixel are under a light.
     void gather_points(std::size_t pixel, const UnshadowedLight& unshadowed);
@@ -86,6 +93,7 @@ class SharedShadowLights {
     void keep_apart(const PixelSamples& own, const Share& share, Hits& hits);
     /// To what points of the pixel get if nothing blocks.
     void add_unblocked(std::size_t pixel);
+    void add_parts(std::size_t point);
 
     ShadowTracer* tracer_;
     const ShadowBudget* budget_;
@@ -94,6 +102,7 @@ class SharedShadowLights {
     std::span<const Light> lights_;                // of the call of start()
     std::span<const UnshadowedLight> unshadowed_;  // likewise
     SampleRange samples_{};
+    std::size_t begin_ = 0, end_ = 0;        // likewise
     std::vector<std::uint8_t> may_share_;    // by light
     const ShadingPoints* points_ = nullptr;  // of the call of add()
     std::vector<PixelSamples> pixels_;
@@ -103,9 +112,11 @@ class SharedShadowLights {
     std::vector<Rgb> group_seen_, group_sampled_;  // of light groups
     std::vector<Rgb> radiance_;                    // by shading point, of the dim lights if nothing blocks
     LightGroupBuffer apart_;                       // of that, likewise
-    std::vector<Member> dim_;                      // lights of a pixel
-    std::vector<Member> dim_points_;               // of a pixel, under one of them
-    std::array<float, kRaysAtOnce> u_{}, v_{};     // a sample's point of the unit square, the first
+    static constexpr std::size_t kPixelsAtOnce = 16;
+    std::array<DimLights, kPixelsAtOnce> gathered_;
+    std::span<const Member> dim_;               // of one of these
+    std::vector<Member> dim_points_;            // of a pixel, under one of them
+    std::array<float, kRaysAtOnce> u_{}, v_{};  // a sample's point of the unit square, the first
     LightTarget target_;
     TerminatorRays terminator_;
 };

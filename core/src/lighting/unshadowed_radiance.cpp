@@ -52,10 +52,7 @@ void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const Ma
     }
     values_.assign(value_count, 0.0F);
     own_strengths_.assign(own_count, Rgb(0));
-    by_material_.resize(point_count_);
-    std::iota(by_material_.begin(), by_material_.end(), 0U);
-    std::stable_sort(by_material_.begin(), by_material_.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return points.material[a] < points.material[b]; });
+    sort_by_material(points, materials.size());
     const std::span<const std::uint32_t> sorted(by_material_);
     for (std::size_t first = 0; first < point_count_;) {
         const std::uint32_t material = points.material[sorted[first]];
@@ -65,6 +62,18 @@ void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const Ma
         }
         shade(points, sorted.subspan(first, last - first), materials[material], lights, report);
         first = last;
+    }
+}
+
+void UnshadowedRadiance::sort_by_material(const ShadingPoints& points, std::size_t materials) {
+    next_of_material_.assign(materials + 1, 0);
+    for (const std::uint32_t material : points.material) {
+        ++next_of_material_[material + 1];
+    }
+    std::partial_sum(next_of_material_.begin(), next_of_material_.end(), next_of_material_.begin());
+    by_material_.resize(points.size());
+    for (std::uint32_t point = 0; point < points.size(); ++point) {
+        by_material_[next_of_material_[points.material[point]]++] = point;
     }
 }
 
@@ -90,7 +99,10 @@ void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std:
     }
     std::optional<Rgb> allowed_for;
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        if (allowed_error_ > 0 && material.auto_order() && allowed_for != strengths_[i]) {
+        // Profiles and sums over faces ask for a tolerance even if no lobe has a choice.
+        const bool asks = views_.chooses() || places_[i].differs ||
+                          !std::holds_alternative<EvenProfile>(traits_of(lights[i]).profile);
+        if (asks && allowed_error_ > 0 && material.auto_order() && allowed_for != strengths_[i]) {
             allowed_for = strengths_[i];
             views_.allow_error(allowed_error_, strengths_[i]);
         }
@@ -105,9 +117,7 @@ void UnshadowedRadiance::integrate(const ShadingPoints& points, std::span<const 
         return;
     }
     seen_.clear();
-    for (std::uint32_t i = 0; i < some.size(); ++i) {
-        seen_.look(light, points.frame[some[i]], points.error[some[i]], tolerance_, i);
-    }
+    seen_.look(light, points.frame, points.error, some, tolerance_);
     for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
         if (!views_.lobe(lobe).is_black() && reflects(traits_of(light), views_.lobe(lobe).shape())) {
             seen_.shade(views_.lobe(lobe), views_.positions().all(), tolerance_, true, batch_,
@@ -142,6 +152,20 @@ void UnshadowedRadiance::add(const ShadingPoints& points, std::span<const std::u
                              std::size_t lobe, RenderReport& report) {
     float* values = &values_[places_[light_index].begin + lobe * point_count_];
     const bool even = std::holds_alternative<EvenProfile>(traits_of(light).profile);
+    if (const int order = batch_.only_order(); order > 0 && even) {
+        std::uint64_t lit = 0;
+        std::uint64_t missed = 0;
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            const std::uint32_t point = some[numbers[k]];
+            values[point] += batch_.values()[k];
+            const std::uint64_t hits = batch_.efforts()[k] > 0 ? points.hit_count(point) : 0;
+            lit += hits;
+            missed += views_.lobe(lobe).within_tolerance(numbers[k]) ? 0 : hits;
+        }
+        report.order_counts[static_cast<std::size_t>(order)] += lit;
+        report.over_tolerance += missed;
+        return;
+    }
     for (std::size_t k = 0; k < numbers.size(); ++k) {
         const std::uint32_t point = some[numbers[k]];
         values[point] += batch_.values()[k];

@@ -45,6 +45,7 @@ class UnshadowedRadiance {
     LightRadiance light(std::size_t index) const;
 
   private:
+    void sort_by_material(const ShadingPoints& points, std::size_t materials);
     /// Some points of one material, under all lights.
     void shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
                std::span<const Light> lights, RenderReport& report);
@@ -73,7 +74,7 @@ class UnshadowedRadiance {
     std::vector<Rgb> own_strengths_;
     double face_tolerance_ = 0;
 
-    std::vector<std::uint32_t> by_material_;
+    std::vector<std::uint32_t> by_material_, next_of_material_;
     std::vector<double> cosines_;
     std::vector<Rgb> weights_;
     std::vector<float> parameters_;

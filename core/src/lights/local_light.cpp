@@ -176,24 +176,15 @@ LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
 
 }  // namespace
 
-std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {
+std::optional<CapView> view_facing_disk(const SphereLight& light, const ShadingFrame& frame) {
     const Vec3d center = frame.point_to_local(light.center);
     const double distance = glm::length(center);
-    if (light.facing_disk) {
-        // Height of the disk's upper rim: the centre's height plus the radius along the disk's steepest line.
-        const double rim = center.z * distance + light.radius * std::hypot(center.x, center.y);
-        if (distance > 0 && !(rim > 0)) {
-            return std::nullopt;
-        }
-        return CapView{distance > 0 ? CapView::Kind::facing_disk : CapView::Kind::inside, center, light.radius};
-    }
-    if (distance <= light.radius) {
-        return CapView{CapView::Kind::inside, center, light.radius};
-    }
-    if (!(center.z + light.radius > 0)) {
+    // Height of the disk's upper rim: the centre's height plus the radius along the disk's steepest line.
+    const double rim = center.z * distance + light.radius * std::hypot(center.x, center.y);
+    if (distance > 0 && !(rim > 0)) {
         return std::nullopt;
     }
-    return CapView{CapView::Kind::sphere, center, light.radius};
+    return CapView{distance > 0 ? CapView::Kind::facing_disk : CapView::Kind::inside, center, light.radius};
 }
 
 std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame) {

@@ -29,7 +29,18 @@ struct CapView {
 };
 
 /// The cap of a light; nothing if it lies below the horizon.
-std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame);
+std::optional<CapView> view_facing_disk(const SphereLight& light, const ShadingFrame& frame);
+inline std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {
+    if (light.facing_disk) {
+        return view_facing_disk(light, frame);
+    }
+    const Vec3d center = frame.point_to_local(light.center);
+    const bool inside = glm::length(center) <= light.radius;
+    if (!inside && !(center.z + light.radius > 0)) {
+        return std::nullopt;
+    }
+    return CapView{inside ? CapView::Kind::inside : CapView::Kind::sphere, center, light.radius};
+}
 std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame);
 /// The cap of a sphere light or sun; nothing for other lights.
 std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame);

@@ -3,6 +3,8 @@
 // A material at many views: the numbers that all lights at a hit share.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -147,6 +149,11 @@ class MaterialViews {
     void allow_error(double error, const Rgb& strength);
 
     std::size_t lobe_count() const { return lobe_count_; }
+    /// Whether any lobe does.
+    bool chooses() const {
+        return std::any_of(lobes_.begin(), lobes_.begin() + static_cast<std::ptrdiff_t>(lobe_count_),
+                           [](const LobeViews& lobe) { return lobe.chooses(); });
+    }
     LobeViews& lobe(std::size_t index) { return lobes_[index]; }
     const ViewPositions& positions() const { return positions_; }
 

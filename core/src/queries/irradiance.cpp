@@ -58,8 +58,7 @@ class IrradianceQuery {
           normals_(normals),
           settings_(&settings),
           progress_(&progress),
-          lighting_(scene.lights(), scene.extended_light_count(), scene.environment(), scene.environment_group(),
-                    {MaterialLobes(Bsdf::lambert(Rgb(1)).lobes(), 0, kTolerance)}, 0, kTolerance),
+          lighting_(scene, {MaterialLobes(Bsdf::lambert(Rgb(1)).lobes(), 0, kTolerance)}, 0, kTolerance),
           cells_(points, kCellPoints),
           penumbrae_(cells_.size(), LightBits::kAll),
           shaders_([&scene, this] {

@@ -72,7 +72,7 @@ class RadianceQuery {
           settings_(&settings),
           sees_lights_(sees_lights),
           progress_(progress),
-          lighting_(scene.lights(), scene.extended_light_count(), scene.environment(), scene.environment_group(),
+          lighting_(scene,
                     lobes_of_materials(scene.materials(), settings.order, settings.tolerance, progress_.stopped()),
                     settings.order, settings.tolerance),
           seen_(origins.size()),
