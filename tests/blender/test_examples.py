@@ -18,7 +18,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def test_render_in_blender_writes_its_picture_and_ends(tmp_path: Path) -> None:
-    # Python once hung at its end while the add-on was registered.
+    # Python waits for ever at its end if something still holds bpy, as typing does by functions with typing.overload.
     subprocess.run(
         [sys.executable, EXAMPLES / "render_in_blender.py", tmp_path / "a.png", "5"],
         check=True,
