@@ -126,7 +126,8 @@ def test_spheres_agree_with_steps_into_the_complex_plane(bsdf: Bsdf, roughness: 
 
 @pytest.mark.parametrize(("bsdf", "roughness"), MATERIALS)
 def test_polygons_agree_with_steps_into_the_complex_plane(bsdf: Bsdf, roughness: float | None) -> None:
-    polygons = random_polygons(4, 12)
+    in_plane_of_view = [[-1, 0, 1], [1, 0, 1], [1, 1, 1], [-1, 1, 1]]
+    polygons = np.concatenate([random_polygons(4, 12), [in_plane_of_view]])
     gradient = shlight.shade_polygons(polygons, bsdf, COSINE, gradient=True)[1]
     for i, vertices in enumerate(polygons):
         expected = truth.derivative(lambda v: truth.polygon_radiance(v, lobe(roughness), VIEW), vertices)
@@ -202,6 +203,19 @@ def test_an_azimuth_turns_gradients_with_the_view() -> None:
     expected = shlight.shade_spheres(center, 0.2, bsdf, COSINE, gradient=True)[1].center @ turn.T
     found = shlight.shade_spheres(turn @ center, 0.2, bsdf, COSINE, phi_o=phi, gradient=True)[1].center
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("roughness", [0.25, 0.5, 1.0])
+def test_an_outline_in_one_plane_with_the_view(roughness: float) -> None:
+    """A sphere in contact has a great circle for its outline, here through a view from above."""
+    angles, weights = np.polynomial.legendre.leggauss(400)
+    bsdf = Bsdf.ggx(roughness, F0)
+    psi = (angles + 1) * np.pi / 4
+    towards = np.stack([0 * psi, np.sin(psi), np.cos(psi)], axis=-1)
+    values = bsdf.evaluate(towards, [0, 0, 1.0])
+    expected = 2 * np.pi / 4 * (weights * np.cos(psi)) @ values.reshape(len(psi), -1)[:, 0]
+    found = shlight.shade_spheres([1.0, 0, 0], 1.0, bsdf, 1.0, gradient="places")[1].center[0]
+    np.testing.assert_allclose(found, [0, 0, expected], rtol=1e-6, atol=1e-9)
 
 
 def test_hidden_degenerate_and_touching_lights_are_finite() -> None:

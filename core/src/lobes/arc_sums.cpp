@@ -66,6 +66,15 @@ class DirectionSums {
     std::array<double, 3> weights_;
 };
 
+/// The parameter of an arc, as of a view that is at least a tenth of the lobe's width apart from the arc's plane, or
+/// cone: where the circle passes opposite of the view, half vectors vanish, and evening them out would bring the
+/// parameter there alone.
+ArcPath path_of(const Arc<double>& arc, const Vec3d& view, double width) {
+    const double apart = arc.cosine + glm::dot(arc.axis, view);
+    const double least = std::copysign(0.1 * width, apart);
+    return {arc, view + (std::abs(apart) < std::abs(least) ? least - apart : 0.0) * arc.axis, width};
+}
+
 bool is_lambert(const WeightedLobe& lobe) {
     return std::holds_alternative<LambertShape>(lobe.shape);
 }
@@ -96,7 +105,7 @@ ArcSums arc_sums(std::span<const WeightedLobe> lobes, double cos_theta_o, const 
     }
     const Vec3d view = resolved_view(cos_theta_o);
     BoundaryQuadrature<DirectionSums> sums(DirectionSums(lobes, view.z, arc, weights));
-    sums.add(ArcPath(arc, view, lobe_width(lobes[0].shape)), 1);
+    sums.add(path_of(arc, view, lobe_width(lobes[0].shape)), 1);
     sums.refine();
     return sums.sum();
 }
