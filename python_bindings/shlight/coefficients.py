@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -40,6 +40,18 @@ from shlight._arrays import (
 from shlight._calls import names_rows
 from shlight._methods import coefficient_function, is_own
 from shlight.gradients import CoefficientGradient
+
+
+class _Settings(TypedDict, total=False):
+    clip: bool
+    method: str
+    dtype: DTypeLike | None
+    threads: int
+    out: Floats | None
+    tolerance: float | None
+    samples: int | None
+    seed: int | None
+    sampling: Literal["solid_angle", "area"] | None
 
 
 @names_rows
@@ -84,16 +96,8 @@ def sphere_coefficients(
     radii: ArrayLike,
     order: int,
     *,
-    clip: bool = ...,
-    method: str = ...,
-    dtype: DTypeLike | None = ...,
-    threads: int = ...,
-    out: Floats | None = ...,
-    tolerance: float | None = ...,
-    samples: int | None = ...,
-    seed: int | None = ...,
-    sampling: Literal["solid_angle", "area"] | None = ...,
     gradient: Literal[False] = ...,
+    **settings: Unpack[_Settings],
 ) -> Floats: ...
 @overload
 def sphere_coefficients(
@@ -101,16 +105,8 @@ def sphere_coefficients(
     radii: ArrayLike,
     order: int,
     *,
-    clip: bool = ...,
-    method: str = ...,
-    dtype: DTypeLike | None = ...,
-    threads: int = ...,
-    out: Floats | None = ...,
-    tolerance: float | None = ...,
-    samples: int | None = ...,
-    seed: int | None = ...,
-    sampling: Literal["solid_angle", "area"] | None = ...,
     gradient: Literal[True],
+    **settings: Unpack[_Settings],
 ) -> tuple[Floats, CoefficientGradient]: ...
 @names_rows
 def sphere_coefficients(
