@@ -98,9 +98,9 @@ class VaryingEmission:
         builder, program = self._program
         given = []
         for source, index, component in self.inputs:
-            values = np.broadcast_to(inputs.get((source, index, component), np.zeros(count)), (3, count))
+            values = np.asarray(inputs.get((source, index, component), np.zeros(count)), dtype=np.float32)
             number = builder.input_number(source, index)
-            given.append(((*number, component), values.astype(np.float32)))
+            given.append(((*number, component), np.broadcast_to(values, (3, count))))
         results: Array = program.evaluate(given, count).astype(np.float64)
         return results
 

@@ -95,12 +95,12 @@ def sampling_levels(texels: Array) -> IntArray:
 
 def _pyramids(radiance: Radiance, uvs: Array, kept: int, finer: int) -> list[_Pyramid]:
     """The pyramids of triangles (n, 3, c), which are sampled together."""
-    parts = np.einsum("pij,njk->npik", corners_at(kept), uvs).reshape(-1, *uvs.shape[1:])
+    parts = np.matmul(corners_at(kept), uvs[:, None]).reshape(-1, *uvs.shape[1:])
     centers = corners_at(finer).mean(axis=1)
     step = max(SAMPLES_AT_ONCE >> (2 * finer), 1)
     mean, square = [], []
     for first in range(0, len(parts), step):
-        places = np.einsum("sj,pjk->psk", centers, parts[first : first + step])
+        places = centers @ parts[first : first + step]
         found = radiance(places.reshape(-1, places.shape[-1])).reshape(*places.shape[:2], -1)
         mean.append(found.mean(axis=1))
         square.append((found**2).sum(axis=2).mean(axis=1))
