@@ -96,7 +96,7 @@ def test_area_lamp_under_any_scale(studio: Any, scale: tuple[float, float, float
 def test_a_crowd_of_far_lamps(studio: Any) -> None:
     studio.still_life()
     studio.camera()
-    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 48, 36
+    studio.resolution(48, 36)
     data = bpy.data.lights.new("Far", "POINT")
     data.energy, data.shadow_soft_size = 100.0, 0.05
     rng = np.random.default_rng(3)
@@ -121,6 +121,7 @@ def test_pixel_filters(studio: Any, kind: str, width: float) -> None:
     for i in range(3):
         studio.plane(0.35, glowing, location=(1.1 * (i - 1), 0.2 * i, 0)).rotation_euler = (0, 0, 0.2 + 0.3 * i)
     studio.camera((0, 0, 4), (0, 0, 0))
+    studio.resolution(32, 24)
     cycles = studio.scene.cycles
     cycles.pixel_filter_type, cycles.filter_width, cycles.samples = kind, width, 4096
     studio.scene.shlight.noise_threshold = 1e-3

@@ -78,10 +78,9 @@ def set_up(studio: Any, lamp: str, glossy: bool) -> None:
     made = studio.lamp(values.pop("kind"), values.pop("energy"), (0.3, -0.4, 1.7), **values)
     made.visible_camera = False
     studio.camera(location=(2.0, -4.0, 3.0))
-    render = studio.scene.render
-    render.resolution_x = render.resolution_y = 48
-    studio.scene.cycles.samples = 256
-    studio.scene.shlight.pixel_samples = 64
+    studio.resolution(40, 40)
+    studio.scene.cycles.samples = 128
+    studio.scene.shlight.pixel_samples = 32
     studio.scene.shlight.tolerance = 1e-4  # below the noise of the reference
 
 

@@ -34,7 +34,7 @@ def stage(studio: Any) -> None:
     studio.plane(6.0, material)
     studio.ball(0.45, material, location=(-0.6, 0.2, 0.45))
     studio.camera(location=(2.0, -4.0, 3.0))
-    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 64
+    studio.resolution(40, 40)
 
 
 def lamp(studio: Any, kind: str) -> Any:
@@ -145,6 +145,7 @@ def glowing(studio: Any, name: str = "Glow") -> Any:
 
 def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
     stage(studio)
+    studio.resolution(64, 64)
     on_points(studio, collection_of(studio, glowing(studio)))
     studio.scene.shlight.pixel_samples = 64
     studio.compare(mean=3e-3, error=3e-3)

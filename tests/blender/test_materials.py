@@ -88,6 +88,7 @@ def mirrors() -> Iterator[Any]:
 def test_mirrors(studio: Any, shader: str, inputs: dict[str, Any], roughness: float) -> None:
     """Down to roughness 0, where a lamp's own image is seen; Cycles draws it from 0.0037 on."""
     shine_on(studio, studio.material(shader, Roughness=roughness, **inputs))
+    studio.resolution(40, 30)
     studio.scene.shlight.pixel_samples = 64  # the image has edges
     studio.scene.cycles.samples = 1024  # 256 miss the narrow peak in too many pixels
     studio.compare(mean=1e-2)  # the edges of the image are cut by the same points in all pixels
