@@ -85,10 +85,16 @@ def panorama_of(lens: Any, frame: Frame, render: Any) -> dict[str, Any] | None:
 
 def _sensor(lens: Any, frame: Frame, render: Any) -> tuple[float, float]:
     """The size of the sensor's part that the whole picture covers [m], with the picture's proportions."""
+    fitted_width, fitted_height = _fitted(lens, frame, render)
+    size = MILLIMETRE * (lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width)
+    return size * fitted_width, size * fitted_height
+
+
+def _fitted(lens: Any, frame: Frame, render: Any) -> tuple[float, float]:
+    """Width and height of the whole picture in units of the side that the sensor is fitted to."""
     width, height = frame.full_width * render.pixel_aspect_x, frame.full_height * render.pixel_aspect_y
     horizontal = lens.sensor_fit == "HORIZONTAL" or (lens.sensor_fit == "AUTO" and width > height)
-    size = MILLIMETRE * (lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width)
-    return (size, size * height / width) if horizontal else (size * width / height, size)
+    return (1.0, height / width) if horizontal else (width / height, 1.0)
 
 
 @dataclass(frozen=True)
@@ -201,14 +207,17 @@ def matrix_of_camera(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> 
 
 
 def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any) -> Matrix:
+    """The projection matrix of one eye.
+
+    The eye's shift is added to the matrix of the camera: Blender refuses to write to the camera, and to its evaluated
+    copy, in any thread as long as another thread draws a panel.
+    """
     lens = camera.data
-    shift_x = lens.shift_x
-    lens.shift_x = eye.shift_x  # of the evaluated copy
-    try:
-        matrix = matrix_of_camera(camera, depsgraph, frame, render)
-    finally:
-        lens.shift_x = shift_x
-    return np.array(matrix, dtype=np.float64)
+    projection = np.array(matrix_of_camera(camera, depsgraph, frame, render), dtype=np.float64)
+    column, sign = (3, -1.0) if lens.type == "ORTHO" else (2, 1.0)  # as in _window
+    fitted_width, _ = _fitted(lens, frame, render)
+    projection[0, column] += sign * 2.0 * (eye.shift_x - lens.shift_x) / fitted_width
+    return projection
 
 
 def _plain(rows: Any) -> tuple[tuple[float, ...], ...]:
