@@ -32,5 +32,6 @@ def start(plan: Generator[None, None, None], found: dict[str, Any], seconds: flo
         return None
 
     bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.system.viewport_aa = "OFF"  # else each change draws a viewport many times, by software here
     shlight_blender.register()
     bpy.app.timers.register(step, first_interval=0.5, persistent=True)

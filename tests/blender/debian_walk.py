@@ -159,6 +159,7 @@ def knock():
 
 
 bpy.context.preferences.view.show_splash = False
+bpy.context.preferences.system.viewport_aa = "OFF"
 bpy.utils.register_class(SHLIGHT_OT_step)
 keys = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Window", space_type="EMPTY")
 keys.keymap_items.new(SHLIGHT_OT_step.bl_idname, KEY, "PRESS")
