@@ -157,9 +157,10 @@ def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
 def test_the_wheel_is_a_package(tmp_path: Path, profile: Path) -> None:
     wheel = next(DIST.glob("shlight-*.whl"))
     environment = tmp_path / "environment"
-    subprocess.run([sys.executable, "-m", "venv", environment], check=True)
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", environment], check=True)
     python = str(environment / "bin/python")
-    subprocess.run([python, "-m", "pip", "install", "-q", wheel], check=True)
+    pip = [sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-compile"]
+    subprocess.run([*pip, wheel], check=True)
     picture = tmp_path / "ball.png"
     run([python, str(ROOT / "examples/render_from_python.py"), str(picture)], profile)
     image = read_texture(picture)[..., :3].astype(float)
