@@ -77,14 +77,14 @@ void compare_with_laplace(int order, int count, double bound) {
 }
 
 TEST(Basis, AgreesWithLaplacesIntegral) {
-    compare_with_laplace<double>(8, 300, 1e-14);
-    compare_with_laplace<double>(16, 200, 1e-13);
-    compare_with_laplace<double>(33, 60, 1e-12);
-    compare_with_laplace<double>(64, 30, 1e-12);
-    compare_with_laplace<float>(8, 300, 1e-5);
-    compare_with_laplace<float>(16, 200, 1e-4);
-    compare_with_laplace<float>(33, 60, 5e-4);
-    compare_with_laplace<float>(64, 30, 2e-3);
+    compare_with_laplace<double>(8, 150, 1e-14);
+    compare_with_laplace<double>(16, 100, 1e-13);
+    compare_with_laplace<double>(33, 30, 1e-12);
+    compare_with_laplace<double>(64, 15, 1e-12);
+    compare_with_laplace<float>(8, 150, 1e-5);
+    compare_with_laplace<float>(16, 100, 1e-4);
+    compare_with_laplace<float>(33, 30, 5e-4);
+    compare_with_laplace<float>(64, 15, 2e-3);
 }
 
 TEST(Basis, EvaluatesExpansions) {

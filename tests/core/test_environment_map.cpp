@@ -382,8 +382,8 @@ TEST(EnvironmentMap, ASunOfOneTexelHasItsExtent) {
     const int height = 128;
     const Floor floor(0.8);
     const glm::dvec2 peak = glm::floor(texel_of(floor.mirrored(), width, height));
-    for (const float roughness : {0.3F, 0.15F, 0.08F, 0.03F}) {
-        for (const int off : {0, 2, 3}) {
+    for (const float roughness : {0.3F, 0.1F, 0.03F}) {
+        for (const int off : {0, 3}) {
             const Bsdf bsdf = Bsdf::ggx(roughness, Rgb(0.5F));
             LatLong picture{std::vector<Rgb>(std::size_t{width} * height), width, height};
             const glm::dvec2 sun = peak + glm::dvec2(off, 0);

@@ -80,11 +80,11 @@ TEST(PlainFit, LambertIsExactFromOrderTwo) {
 /// The fit's norm and residual agree with measured ones, also between tabulated view angles.
 TEST(PlainFit, ResidualIsTheMeasuredError) {
     RandomInput random(60);
-    for (const double alpha : {0.2, 0.3, 0.6, 1.0}) {
+    for (const double alpha : {0.2, 0.5, 1.0}) {
         for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick, Fresnel::dielectric}) {
             const LobeShape shape = GgxShape{alpha, fresnel, 1.5};
             const PlainFit fit(shape);
-            for (int i = 0; i < 3; ++i) {
+            for (int i = 0; i < 2; ++i) {
                 const double cos_theta_o = i == 0 ? 1 : random.uniform(0.15, 1);
                 const double norm = measured_norm(shape, cos_theta_o);
                 EXPECT_NEAR(fit.norm(cos_theta_o), norm, 2e-3 * norm + 1e-5);

@@ -74,7 +74,7 @@ void expect_convergence(int inputs, std::uint64_t seed, const Draw& draw, const 
 }
 
 TEST(Reference, CapsHaveConverged) {
-    expect_convergence(300, 1, random_clipped_cap, [](const CapInput& input, int order, bool clip, int extra_nodes) {
+    expect_convergence(100, 1, random_clipped_cap, [](const CapInput& input, int order, bool clip, int extra_nodes) {
         return truth::cap(input, order, clip, extra_nodes);
     });
 }
@@ -85,7 +85,7 @@ TEST(Reference, CapsAgreeWithQuadratureOverColatitude) {
     RandomInput random(5);
     double methods = 0;
     double resolutions = 0;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 20; ++i) {
         const double horizon = std::numbers::pi * random.uniform(0.001, 0.999);
         const CapInput input{random.direction(), CapInput::Kind::angle, random.uniform(0.01, 3.13)};
         const auto above = [&](int extra_nodes) {
@@ -122,7 +122,7 @@ TEST(Reference, BoostedCapsHaveConverged) {
 
 TEST(Reference, PolygonsHaveConverged) {
     expect_convergence(
-        200, 3, [](RandomInput& random) { return random_polygon(random, random.log_uniform(1e-6, 100)); },
+        80, 3, [](RandomInput& random) { return random_polygon(random, random.log_uniform(1e-6, 100)); },
         [](const std::vector<Vec3d>& vertices, int order, bool clip, int extra_nodes) {
             return truth::polygon(vertices, order, clip, extra_nodes);
         });
@@ -131,7 +131,7 @@ TEST(Reference, PolygonsHaveConverged) {
 TEST(Reference, PolygonsAgreeWithProductCubature) {
     RandomInput random(4);
     double largest = 0;
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 6; ++i) {
         const std::vector<Vec3d> vertices = random_polygon(random, random.log_uniform(1e-4, 0.3));
         for (const bool clip : {true, false}) {
             const Coefficients reference = truth::polygon(vertices, 10, clip);
@@ -148,7 +148,7 @@ TEST(Reference, EllipsesHaveConverged) {
         const double size = random.log_uniform(0.1, 10);
         return EllipseInput{random.direction(), size * random.direction(), size * random.direction()};
     };
-    expect_convergence(40, 9, draw, [](const EllipseInput& input, int order, bool clip, int extra_nodes) {
+    expect_convergence(20, 9, draw, [](const EllipseInput& input, int order, bool clip, int extra_nodes) {
         return truth::ellipse(input, order, clip, extra_nodes);
     });
 }

@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kSize = 32;
+constexpr int kSize = 24;
 
 /// A box of half sizes about a place.
 Mesh box(const Vec3d& half, const Vec3d& place) {

@@ -87,7 +87,7 @@ TEST(RenderProfiles, SpotWithARadiusVariesOverIt) {
 
 TEST(RenderProfiles, SpreadOfAnAreaLight) {
     const std::vector<Vec3d> corners = {{-0.8, -0.5, 1.1}, {-0.8, 0.7, 1.1}, {1, 0.7, 1.1}, {1, -0.5, 1.1}};
-    for (const double spread : {0.2, pi / 3, 2.5, 3.1}) {
+    for (const double spread : {0.2, pi / 3, 3.1}) {
         const double h = spread / 2;
         const auto truth = [&](const Vec3d& p, const Reflection& f) {
             return over_parallelogram(p, corners, 200, [&](const Vec3d& w) {
