@@ -27,12 +27,12 @@ def of_equal_area(subdivisions: int) -> tuple[NDArray[np.float64], NDArray[np.in
 def test_icosphere_gives_the_picture_of_the_sphere(bsdf: shlight.Bsdf, shadow_rays: int) -> None:
     under_sphere = ball_on_floor(bsdf)
     under_sphere.add_sphere_light(CENTER, RADIUS, RADIANCE)
-    expected = shlight.render(under_sphere, 64, 48, shadow_rays=shadow_rays, max_bounces=0)[..., :3]
-    for subdivisions in (1, 7):  # 80 and 327680 faces
+    expected = shlight.render(under_sphere, 32, 24, shadow_rays=shadow_rays, max_bounces=0)[..., :3]
+    for subdivisions in (1, 6):  # 80 and 81920 faces
         image = shlight.render(
-            under_mesh(of_equal_area(subdivisions), bsdf), 64, 48, shadow_rays=shadow_rays, max_bounces=0
+            under_mesh(of_equal_area(subdivisions), bsdf), 32, 24, shadow_rays=shadow_rays, max_bounces=0
         )[..., :3]
-        below = slice(20, None)  # without the lamp, which the camera sees if it is a mesh
+        below = slice(10, None)  # without the lamp, which the camera sees if it is a mesh
         assert rel_mse(image[below], expected[below]) <= 1e-3
         # Each picture draws shadow rays of its own, and 80 faces show more to some sides than to others.
         most = 3e-3 if shadow_rays else 2e-3 if subdivisions == 1 else 1e-3
@@ -44,14 +44,14 @@ def test_what_is_not_opaque_shines_through_itself() -> None:
     share = 0.5
     bsdf = shlight.Bsdf.lambert(0.8)
     ball = icosphere(3)
-    expected = share * (2 - share) * shlight.render(under_mesh(ball, bsdf), 64, 48, max_bounces=0)[..., :3]
+    expected = share * (2 - share) * shlight.render(under_mesh(ball, bsdf), 32, 24, max_bounces=0)[..., :3]
     scene = ball_on_floor(bsdf)
     vertices, faces = ball
     radiance = share * np.asarray(RADIANCE)
     veil = nodes.mix(nodes.transparent(), nodes.emission(RADIANCE), share)
     scene.add_mesh(RADIUS * vertices + CENTER, faces, bsdf=veil, emission=radiance)
-    image = shlight.render(scene, 64, 48, max_bounces=0)[..., :3]
-    below = slice(20, None)
+    image = shlight.render(scene, 32, 24, max_bounces=0)[..., :3]
+    below = slice(10, None)
     assert rel_mse(image[below], expected[below]) <= 1e-3
     assert abs(mean_ratio(image[below], expected[below]) - 1) <= 5e-3
 
@@ -65,7 +65,7 @@ def test_a_closed_emitter_of_two_colours_may_be_wound_either_way() -> None:
         scene.add_mesh(
             RADIUS * vertices + CENTER, wound, emission=[(4, 0.1, 0), (0.1, 4, 0)], material_indices=upper.astype(int)
         )
-        images.append(shlight.render(scene, 64, 48, max_bounces=0)[..., :3])
+        images.append(shlight.render(scene, 32, 24, max_bounces=0)[..., :3])
     # Shadow rays go to other points of faces whose corners come in another order.
     assert rel_mse(*images) <= 1e-3
     assert abs(mean_ratio(*images) - 1) <= 3e-3

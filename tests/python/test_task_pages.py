@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import shlight
+
 TASKS = Path(__file__).parents[2] / "docs" / "tasks"
 sys.path.insert(0, str(TASKS))
 
@@ -19,10 +21,17 @@ NUMBER = re.compile(r"(?<![\w])[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 PICTURE = re.compile(r"!\[.*?\]\((images/.*?)\)")
 
 
+LOOKED_AT = {"bounces", "models", "own_material"}  # pages that print no more of a picture than its mean
+
+
 @pytest.mark.parametrize("page", sorted(TASKS.glob("*.md")), ids=lambda page: page.stem)
 def test_a_page_is_as_its_code_has_it(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("images").mkdir()
+    if page.stem in LOOKED_AT:
+        render = shlight.render
+        small = lambda scene, width, height, **options: render(scene, width // 3, height // 3, **options)  # noqa: E731
+        monkeypatch.setattr(shlight, "render", small)
     made, written = build.built(page), page.read_text()
     assert NUMBER.sub("0", made) == NUMBER.sub("0", written)
     # Processors round differently, after which a ray may pass an edge that it meets elsewhere.
