@@ -27,7 +27,7 @@ class Studio:
         """Settings that make Cycles' picture a reference for direct light, and both pictures comparable."""
         scene = self.scene = bpy.context.scene
         render = scene.render
-        render.resolution_x, render.resolution_y, render.resolution_percentage = 64, 48, 100
+        render.resolution_x, render.resolution_y, render.resolution_percentage = 48, 36, 100
         render.image_settings.file_format = "OPEN_EXR"
         render.image_settings.color_mode = "RGBA"
         render.image_settings.color_depth = "32"

@@ -90,13 +90,14 @@ def test_area_lamp_under_any_scale(studio: Any, scale: tuple[float, float, float
         120, (0, 0.5, 1.2), shape="RECTANGLE", size=1.0, size_y=0.7, rotation_euler=(0.35, 0.2, 0.5), scale=scale
     )
     studio.camera()
+    studio.resolution(64, 48)
     studio.compare()
 
 
 def test_a_crowd_of_far_lamps(studio: Any) -> None:
     studio.still_life()
     studio.camera()
-    studio.resolution(48, 36)
+    studio.resolution(32, 24)
     data = bpy.data.lights.new("Far", "POINT")
     data.energy, data.shadow_soft_size = 100.0, 0.05
     rng = np.random.default_rng(3)

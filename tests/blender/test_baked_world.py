@@ -25,7 +25,7 @@ def _nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def background(studio: Any) -> Any:
     """The Background node of a fresh world; the picture it is baked to is small."""
-    studio.scene.shlight.world_width = 512
+    studio.scene.shlight.world_width = 256
     return studio.world()
 
 
@@ -84,6 +84,7 @@ def ball_and_floor(studio: Any) -> None:
 
 def test_sky(studio: Any) -> None:
     studio.ball_in_view_of_the_world()
+    studio.resolution(32, 24)
     set_sky(studio, disc=False)
     studio.scene.shlight.pixel_samples = 16
     studio.compare(error=2e-3)
@@ -102,12 +103,14 @@ def test_sky(studio: Any) -> None:
 )
 def test_sky_with_its_sun(studio: Any, sun: dict[str, float]) -> None:
     ball_and_floor(studio)
+    studio.resolution(32, 24)
     set_sky(studio, disc=True, **sun)
     studio.compare(error=2e-3)
 
 
 def test_gradient_and_noise(studio: Any) -> None:
     studio.ball_in_view_of_the_world()
+    studio.resolution(32, 24)
     set_gradient(studio)
     studio.scene.shlight.pixel_samples = 16
     studio.compare(error=2e-3)
@@ -156,7 +159,9 @@ def test_frame_of_an_animated_world(studio: Any) -> None:
 
 def test_renders_of_the_same_world_bake_it_once(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     studio.ball_in_view_of_the_world()
+    studio.resolution(16, 12)
     set_gradient(studio)
+    studio.scene.shlight.world_width = 128
     started: list[Any] = []
     run = bake._baked
     monkeypatch.setattr(bake, "_baked", lambda *given: started.append(given) or run(*given))

@@ -265,7 +265,7 @@ def test_what_is_left_out_of_a_dark_scene_is_named_first(studio: Any) -> None:
 
 def test_cornell_box(shared_scene: Any) -> None:
     studio = shared_scene("cornell_box.blend")
-    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 64
+    studio.resolution(48, 48)
     # The emitter is 300 times as bright as the walls: what its edges cover counts.
     studio.scene.shlight.pixel_samples = 256
     studio.scene.shlight.shadow_rays = 2
@@ -275,6 +275,7 @@ def test_cornell_box(shared_scene: Any) -> None:
 def test_lamps_of_all_types(shared_scene: Any) -> None:
     """Compares the lamps with the file's grey world, and without."""
     studio = shared_scene("lights.blend")
+    studio.resolution(64, 48)
     assert "Light" not in "\n".join(messages())
     studio.scene.cycles.samples = 2048  # small lamps: noise of Cycles
     studio.scene.shlight.noise_threshold = 0  # a few pixels beside the lamps are most of the mean

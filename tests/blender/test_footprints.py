@@ -61,7 +61,6 @@ def bumpy(studio: Any) -> tuple[Any, Any]:
 
 def renders(studio: Any) -> tuple[Any, Any]:
     """Functions that render the scene with a number of samples: ours and Cycles'."""
-    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 96, 64
 
     def cycles_at(samples: int) -> Any:
         studio.scene.cycles.samples = samples
@@ -76,6 +75,7 @@ def renders(studio: Any) -> tuple[Any, Any]:
 
 def test_one_ray_is_smooth_and_many_are_right(studio: Any) -> None:
     checkered(studio)
+    studio.resolution(64, 43)
     ours_at, cycles_at = renders(studio)
     reference = cycles_at(1024)
     single, many, noisy = ours_at(1), ours_at(64), cycles_at(1)
@@ -91,12 +91,15 @@ def test_few_rays_see_normals_as_many_do(studio: Any) -> None:
     The same holds where a node that changes nothing lies between the picture and the normal.
     """
     tree, bent = bumpy(studio)
+    studio.resolution(48, 32)
     ours_at, cycles_at = renders(studio)
-    reference, few = cycles_at(2048), [ours_at(4)]
+    reference, few = cycles_at(512), ours_at(4)
+    # Noise of either picture; with filtered normals they differ by 0.017, and by 6 % on average.
+    assert rel_mse(few, reference) <= 4e-3
+    assert abs(mean_ratio(few, reference) - 1) <= 5e-3
+    studio.resolution(24, 16)
+    few = ours_at(4)
     curve = tree.nodes.new("ShaderNodeRGBCurve")
     tree.links.new(bent.inputs["Color"].links[0].from_socket, curve.inputs["Color"])
     tree.links.new(curve.outputs["Color"], bent.inputs["Color"])
-    few.append(ours_at(4))
-    for image in few:
-        assert rel_mse(image, reference) <= 1e-3
-        assert abs(mean_ratio(image, reference) - 1) <= 1e-3
+    np.testing.assert_allclose(ours_at(4), few, rtol=1e-5, atol=1e-6)

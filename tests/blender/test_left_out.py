@@ -48,6 +48,7 @@ def field(studio: Any) -> None:
 )
 def test_simplify_leaves_out_what_cycles_does(studio: Any, kind: str, culled: str) -> None:
     field(studio)
+    studio.resolution(64, 48)
     cycles, lens = studio.scene.cycles, studio.scene.camera.data
     lens.type, lens.ortho_scale = kind, 5.0
     cycles.camera_cull_margin, cycles.distance_cull_margin = 0.05, 7.0

@@ -52,12 +52,6 @@ def said() -> str:
     return "\n".join(record.last.report.lines())
 
 
-def test_it_is_drawn_in_the_place_of_the_nodes_and_named(paper: Any, measured: Path) -> None:
-    bpy.data.materials["Paper"].shlight.measured_file = str(measured)
-    np.testing.assert_allclose(middle(paper), ALBEDO, rtol=0.02)
-    assert "Material 'Paper': it reflects as its measured file 'paper.bin' has it" in said()
-
-
 def test_a_file_that_cannot_be_read_is_named_and_the_nodes_are_drawn(paper: Any, measured: Path) -> None:
     by_nodes = middle(paper)
     settings = bpy.data.materials["Paper"].shlight
@@ -88,7 +82,7 @@ def test_paths_are_relative_to_the_file_and_to_that_of_a_library(paper: Any, mea
     bpy.data.materials["Paper"].shlight.measured_file = "//brdf/paper.bin"
     library = tmp_path / "library.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(library))
-    np.testing.assert_allclose(middle(paper), ALBEDO, rtol=0.02)
+    assert any("'paper.bin' has it" in line for line in paper.messages())
     (tmp_path / "elsewhere").mkdir()
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
@@ -115,13 +109,14 @@ def test_files_of_a_farm_are_sent_and_found(paper: Any, measured: Path, tmp_path
     assert source.of_open_scene(scene)[1] == [str(there)]
 
 
-def test_a_change_is_taken_over_and_so_are_the_nodes_afterwards(paper: Any, measured: Path) -> None:
+def test_it_is_drawn_in_the_place_of_the_nodes_and_named_and_they_afterwards(paper: Any, measured: Path) -> None:
     """Persistent Data keeps the scene from render to render."""
     paper.scene.render.use_persistent_data = True
     by_nodes = middle(paper)
     settings = bpy.data.materials["Paper"].shlight
     settings.measured_file = str(measured)
     np.testing.assert_allclose(middle(paper), ALBEDO, rtol=0.02)
+    assert "Material 'Paper': it reflects as its measured file 'paper.bin' has it" in said()
     settings.measured_file = ""
     np.testing.assert_array_equal(middle(paper), by_nodes)
 

@@ -21,7 +21,7 @@ def test_a_picture_larger_than_the_memory_is_an_error(studio: Any, monkeypatch: 
     info = studio.folder / "meminfo"
     info.write_text("MemTotal: 9000000 kB\nMemAvailable: 180 kB\nSwapFree: 20 kB\n")
     monkeypatch.setattr(frame, "MEMORY_INFO", info)
-    with pytest.raises(RuntimeError, match="a picture of 64 × 48 pixels takes about"):
+    with pytest.raises(RuntimeError, match="a picture of 48 × 36 pixels takes about"):
         studio.render("SHLIGHT")
     assert not (studio.folder / "shlight.exr").exists()
     render = studio.scene.render

@@ -25,6 +25,7 @@ GROUPS = ("key", "fill", "sky")
 
 def scene_with_groups(studio: Any) -> Any:
     scene = studio.scene
+    studio.resolution(64, 48)
     matt = studio.material("ShaderNodeBsdfDiffuse", "Matt", Color=(0.6, 0.5, 0.3))
     glossy = studio.material("ShaderNodeBsdfGlossy", "Glossy", Color=(0.9, 0.7, 0.4), Roughness=0.5)
     for material, index in ((matt, 4), (glossy, 7)):
