@@ -350,13 +350,14 @@ def test_a_ball_of_fabric_against_monte_carlo(woven: Bsdf) -> None:
 def test_pickles_and_copies() -> None:
     light, _ = hemisphere(5)
     for bsdf in (
-        Bsdf.from_function(ISOTROPIC, samples=8) * [1, 0.5, 0.2],
-        Bsdf.from_function(ANISOTROPIC, isotropic=False, order=8, samples=8) + Bsdf.lambert(0.1),
+        Bsdf.from_function(ISOTROPIC, order=8, samples=8) * [1, 0.5, 0.2],
+        Bsdf.from_function(ANISOTROPIC, isotropic=False, samples=8) + Bsdf.lambert(0.1),
     ):
         for other in (pickle.loads(pickle.dumps(bsdf)), copy.deepcopy(bsdf)):
             np.testing.assert_array_equal(other.evaluate(light, [0, 0.6, 0.8]), bsdf.evaluate(light, [0, 0.6, 0.8]))
-            lit = [shlight.shade_spheres([0, 0.3, 1.0], 0.3, b, 0.8) for b in (bsdf, other)]
-            np.testing.assert_array_equal(*lit)
+            if not bsdf.is_anisotropic:  # which takes seconds before it shades
+                lit = [shlight.shade_spheres([0, 0.3, 1.0], 0.3, b, 0.8) for b in (bsdf, other)]
+                np.testing.assert_array_equal(*lit)
 
 
 def test_only_order() -> None:
