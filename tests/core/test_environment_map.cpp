@@ -127,7 +127,11 @@ TEST(TurnedLobes, ReflectAsFunctionsMoveWithTheirArgument) {
         std::vector<TurnedLobe> lobes;
         for (const glm::dmat3& rotation : rotations) {
             TurnedLobe& lobe = lobes.emplace_back(TurnedLobe{{}, BandRotation(rotation)});
+            lobe.sine = lobes.size() % 3 == 0 ? 1.0F : 0.0F;
             std::generate_n(lobe.terms.begin(), cosine_count(order), [&] { return normal(random) / 64; });
+            for (int l = 0; lobe.sine == 1 && l < order; ++l) {
+                lobe.terms[static_cast<std::size_t>(cosine_index(l, 0))] = 0;
+            }
         }
         for (int i = 0; i < 20; ++i) {
             std::array<Vec3d, 3> directions;
@@ -145,7 +149,8 @@ TEST(TurnedLobes, ReflectAsFunctionsMoveWithTheirArgument) {
                     double expected = 0;
                     for (int l = 0; l < order; ++l) {
                         for (int m = 0; m <= l; ++m) {
-                            expected += lobes[k].terms[cosine_index(l, m)] * basis[coefficient_index(l, m)];
+                            const int degree = lobes[k].sine == 1 ? -m : m;
+                            expected += lobes[k].terms[cosine_index(l, m)] * basis[coefficient_index(l, degree)];
                         }
                     }
                     EXPECT_NEAR(reflected[k][c], expected, 2e-4) << order << ' ' << k;
@@ -163,7 +168,7 @@ TEST(ShProjection, IsTheLobesMoments) {
         for (const double tilt : {0.1234, 0.9, 1.4}) {
             const LobeMoments expected = lobe_moments(shape, tilt);
             std::vector<float> terms(2080);
-            lobe->coefficients(static_cast<float>(std::cos(tilt)), 64, terms.data());
+            lobe->coefficients(static_cast<float>(std::cos(tilt)), 0, false, 64, terms.data());
             for (std::size_t i = 0; i < terms.size(); ++i) {
                 ASSERT_NEAR(terms[i], expected.moments[i], 1e-4 * std::max(1.0, std::sqrt(expected.norm_squared)))
                     << tilt << ", " << i;

@@ -423,10 +423,67 @@ def test_tables_that_are_refused() -> None:
             Bsdf.from_table(*arguments)
 
 
-def test_what_anisotropic_materials_cannot_do_yet(anisotropic: Bsdf) -> None:
+def test_a_method_of_an_anisotropic_material_is_refused(anisotropic: Bsdf) -> None:
     with pytest.raises(ValueError, match="method must be 'auto' for an anisotropic bsdf"):
         shlight.shade_spheres([0, 0, 1.0], 0.2, anisotropic, 0.5, method="monte_carlo")
-    scene = fabric_ball(anisotropic)
-    scene.set_environment(np.random.default_rng(0).uniform(0, 1, (8, 16, 3)))
-    with pytest.raises(ValueError, match="environment"):
-        shlight.render(scene, 4, 4)
+
+
+def sky() -> Floats:
+    """A lat-long picture (16, 32, 3): a gradient, a bright window that is no square, and a sun of one texel."""
+    picture = np.linspace(0.2, 1, 32)[None, :, None] * np.linspace(1, 0.3, 16)[:, None, None] * [1.0, 0.9, 0.7]
+    picture[3:6, 5:12] = [6.0, 7, 8]
+    picture[4, 26] = [400.0, 300, 200]
+    return picture.astype(np.float32)
+
+
+def radiance_of(picture: Floats, directions: Floats) -> Floats:
+    """Bilinear between the centres of texels, and along a meridian constant beyond the outermost ones."""
+    height, width = picture.shape[:2]
+    column = (0.5 - np.arctan2(directions[:, 1], directions[:, 0]) / (2 * PI)) * width - 0.5
+    row = np.clip(np.arccos(directions[:, 2]) / PI * height - 0.5, 0, height - 1)
+    left, top = np.floor(column).astype(int), np.minimum(np.floor(row).astype(int), height - 2)
+    s, t = (column - left)[:, None], (row - top)[:, None]
+    upper, lower = ((1 - s) * picture[top + i, left % width] + s * picture[top + i, (left + 1) % width] for i in (0, 1))
+    return np.asarray((1 - t) * upper + t * lower)
+
+
+@pytest.fixture(scope="module")
+def threads() -> Bsdf:
+    """A table of directions, whose harmonics stay in the frame of the tangent."""
+    angles = np.radians(15.0 * np.arange(6)), np.radians(7.5 * np.arange(48))
+    return Bsdf.from_table(fabric()[..., 0], *angles, *angles)
+
+
+@pytest.mark.parametrize("which", ["anisotropic", "threads"])
+@pytest.mark.parametrize("wall", [False, True])
+def test_a_picture_around_the_scene_lights_it(which: str, wall: bool, request: pytest.FixtureRequest) -> None:
+    bsdf = request.getfixturevalue(which)
+    turn = 0.4  # of the tangent about the normal
+    floor = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    u = floor @ [math.cos(turn), math.sin(turn), 0]
+    v = floor @ [-math.sin(turn), math.cos(turn), 0]
+    scene = shlight.Scene()
+    scene.add_mesh(floor, [[0, 1, 2], [0, 2, 3]], uvs=np.stack([u, v], axis=-1), bsdf=bsdf)
+    if wall:
+        tall = np.array([[0.3, -1e4, -1e-3], [0.3, 1e4, -1e-3], [0.3, 1e4, 1e4], [0.3, -1e4, 1e4]])
+        scene.add_mesh(tall, [[0, 1, 2], [0, 2, 3]], bsdf=Bsdf.lambert(0))
+    scene.set_environment(sky())
+    light, solid = hemisphere(250)
+    incident = radiance_of(sky(), _about_z(light, turn)) * solid[:, None]
+    if wall:
+        incident[_about_z(light, turn)[:, 0] > 0] = 0
+    views = np.stack([direction(tilt, phi) for tilt, phi in ((0.3, 4.0), (0.8, 2.2), (1.2, 3.0), (1.3, 1.9))])
+    towards = _about_z(views, turn)
+    expected = np.stack([bsdf.evaluate(light, view) @ incident for view in views])
+    count = 64 if wall else 1
+    asked = {"max_bounces": 0, "min_samples": count, "max_samples": count, "shadow_rays": 256}
+    seen = scene.radiance(0.2 * towards, -towards, **asked)
+    np.testing.assert_allclose(seen, expected, rtol=0.02 if wall else 5e-3)
+    scene.set_camera(shlight.look_at(0.2 * towards[1], [0, 0, 0]), 1e-3)
+    image = shlight.render(scene, 1, 1, **asked)
+    np.testing.assert_allclose(image[0, 0, :3], expected[1], rtol=0.02 if wall else 5e-3)
+
+
+def _about_z(directions: Floats, angle: float) -> Floats:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.asarray(directions @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]))

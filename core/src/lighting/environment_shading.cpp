@@ -8,11 +8,9 @@
 #include <memory>
 #include <numbers>
 
-#include "base/checks.h"
 #include "environment/map_lookup.h"
 #include "lobes/lobe_rays.h"
 #include "lobes/turned_lobes.h"
-#include "lobes/view_grid.h"
 #include "shlight/basis.h"
 #include "simd/dot_products.h"
 
@@ -89,9 +87,6 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
     }
     spots_.emplace(*environment.map());
     for (const MaterialLobes& material : materials) {
-        if (material.is_anisotropic()) {
-            reject("environment: pictures do not light anisotropic materials; a constant radiance and lights do");
-        }
         auto& plans = plans_.emplace_back();
         auto& width_plans = width_plans_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
@@ -151,20 +146,21 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const 
     return plan;
 }
 
-EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, double cos_theta_o) {
-    const Choice a = choose(*mix.plans[0], cos_theta_o);
-    const Choice b = choose(*mix.plans[1], cos_theta_o);
+EnvironmentShading::Choice EnvironmentShading::either(const Choice& a, const Choice& b) {
     return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};
 }
 
-EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o) {
-    if (plan.choices.size() == 1) {
-        return plan.choices[0];
+EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, double cos_theta_o, double parameter) {
+    return either(choose(*mix.plans[0], cos_theta_o, parameter), choose(*mix.plans[1], cos_theta_o, parameter));
+}
+
+EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o, double parameter) {
+    const RowTaps nodes = plan.lobe->nodes(cos_theta_o, parameter);
+    Choice choice = plan.choices[nodes.rows[0]];
+    for (std::size_t i = 1; i < nodes.count; ++i) {
+        choice = either(choice, plan.choices[nodes.rows[i]]);
     }
-    const std::size_t low = ViewInterval(cos_theta_o).low;
-    const Choice& a = plan.choices[low];
-    const Choice& b = plan.choices[low + 1];
-    return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};
+    return choice;
 }
 
 /// One point under a picture.
@@ -221,10 +217,19 @@ class EnvironmentShading::Harmonics {
   public:
     explicit Harmonics(const ColorHarmonics& light) : light_(&light) {}
 
-    /// Adds share times what a lobe reflects to value. All stay where they are until `finish`.
-    void add(const ShProjection& lobe, float cos_theta_o, const glm::dmat3& to_light, int order, float share,
-             Rgb& value) {
-        (lobe.is_zonal() ? zonal_ : turned_).push_back({&lobe, cos_theta_o, to_light, order, share, &value});
+    /// Adds share times what a lobe with this lobe_parameter() reflects to value. All stay where they are until
+    /// `finish`. to_light: from the frame of the view.
+    void add(const ShProjection& lobe, float cos_theta_o, float parameter, const glm::dmat3& to_light, int order,
+             float share, Rgb& value) {
+        const double azimuth = lobe.azimuth_of_view(parameter);
+        const glm::dmat3 turn = glm::dmat3({std::cos(azimuth), -std::sin(azimuth), 0},
+                                           {std::sin(azimuth), std::cos(azimuth), 0}, {0, 0, 1});
+        const Wanted wanted = {&lobe, cos_theta_o, parameter, false, to_light * turn, order, share, &value};
+        (lobe.is_zonal() ? zonal_ : turned_).push_back(wanted);
+        if (lobe.has_sines()) {
+            turned_.push_back(wanted);
+            turned_.back().sines = true;
+        }
     }
 
     void finish() {
@@ -243,7 +248,8 @@ class EnvironmentShading::Harmonics {
   private:
     struct Wanted {
         const ShProjection* lobe;
-        float cos_theta_o;
+        float cos_theta_o, parameter;
+        bool sines;
         glm::dmat3 to_light;
         int order;
         float share;
@@ -254,7 +260,7 @@ class EnvironmentShading::Harmonics {
     void add_zonal(std::span<const Wanted> some) {
         const int order = some[0].order;
         std::array<float, kCosineMax> terms;
-        some[0].lobe->coefficients(some[0].cos_theta_o, order, terms.data());
+        some[0].lobe->coefficients(some[0].cos_theta_o, some[0].parameter, false, order, terms.data());
         ColorHarmonics reflected = *light_;
         for (int l = 0; l < order; ++l) {
             const float factor =
@@ -290,8 +296,9 @@ class EnvironmentShading::Harmonics {
             lobes_.clear();
             for (std::size_t i = 0; i < kTurnedLanes; ++i) {
                 const Wanted& own = some[std::min(i, some.size() - 1)];
-                TurnedLobe& lobe = lobes_.emplace_back(TurnedLobe{{}, BandRotation(own.to_light)});
-                own.lobe->coefficients(own.cos_theta_o, own.order, lobe.terms.data());
+                TurnedLobe& lobe =
+                    lobes_.emplace_back(TurnedLobe{{}, BandRotation(own.to_light), own.sines ? 1.0F : 0.0F});
+                own.lobe->coefficients(own.cos_theta_o, own.parameter, own.sines, own.order, lobe.terms.data());
             }
             std::array<Rgb, kTurnedLanes> reflected;
             reflect_turned(lobes_, some.back().order, *light_, reflected);
@@ -354,27 +361,28 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
     Harmonics harmonics(environment_->map()->coefficients.channels);
     for_each_lobe(points, [&](std::size_t i, std::size_t lobe, const LobeShape&, const Point& point, std::size_t at) {
         const float cosine = points.cos_theta_o[i];
-        const PlanMix mix = plans(points.material[i], lobe, points.parameters(i)[lobe]);
-        const int order = choose(mix, cosine).order;
+        const float parameter = points.parameters(i)[lobe];
+        const PlanMix mix = plans(points.material[i], lobe, parameter);
+        const int order = choose(mix, cosine, parameter).order;
         Rgb& smooth = parts.smooth[at];
-        harmonics.add(*mix.plans[0]->lobe, cosine, point.to_map(), order, 1 - mix.share, smooth);
+        harmonics.add(*mix.plans[0]->lobe, cosine, parameter, point.to_map(), order, 1 - mix.share, smooth);
         if (mix.share > 0) {
-            harmonics.add(*mix.plans[1]->lobe, cosine, point.to_map(), order, mix.share, smooth);
+            harmonics.add(*mix.plans[1]->lobe, cosine, parameter, point.to_map(), order, mix.share, smooth);
         }
     });
     harmonics.finish();
     for_each_lobe(
         points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
             const std::uint32_t material = points.material[i];
-            const float width = points.parameters(i)[lobe];
+            const float parameter = points.parameters(i)[lobe];
             const double cosine = points.cos_theta_o[i];
-            const Choice choice = choose(plans(material, lobe, width), cosine);
+            const Choice choice = choose(plans(material, lobe, parameter), cosine, parameter);
             if (!sees_texels(shape)) {
                 parts.spots[at] = spots_->reflected(shape, point.to_map(), point.view());
             }
             Rgb& smooth = parts.smooth[at];
             if (choice.directions) {
-                smooth += static_cast<float>(albedo_of(materials_[material], lobe, width, cosine)) *
+                smooth += static_cast<float>(albedo_of(materials_[material], lobe, parameter, cosine)) *
                           point.by_directions(shape, sees_texels(shape));
             }
             smooth = glm::max(smooth, Rgb(0));

@@ -70,8 +70,10 @@ class EnvironmentShading {
     /// function(point, lobe, its shape, Point, index in UnshadowedParts)
     template <class Function>
     void for_each_lobe(const ShadingPoints& points, const Function& function) const;
-    static Choice choose(const Plan& plan, double cos_theta_o);
-    static Choice choose(const PlanMix& mix, double cos_theta_o);
+    static Choice choose(const Plan& plan, double cos_theta_o, double parameter);
+    static Choice choose(const PlanMix& mix, double cos_theta_o, double parameter);
+    /// Returns what serves both.
+    static Choice either(const Choice& a, const Choice& b);
 
     const Environment* environment_;
     std::span<const MaterialLobes> materials_;

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "lobes/anisotropic_views.h"
 #include "shlight/lobe_shape.h"
-#include "shlight/lobe_table.h"
 
 namespace shlight {
 
@@ -26,21 +26,12 @@ class AnisotropicFit {
     void coefficients(double cos_theta_o, double azimuth, int order, float* out) const;
 
   private:
-    /// Rows of the table and their weights in an interpolation.
-    struct Taps;
-    Taps taps(double cos_theta_o, double azimuth) const;
-    void place_views(const LobeTable& table);
     void fit_view(const TableShape& shape, std::size_t view);
-    void interpolate(const Taps& taps, std::size_t column, std::size_t count, float* out) const;
 
     std::vector<int> orders_;
     std::vector<std::size_t> first_;  // column of each order
     std::size_t row_size_ = 0;
-    /// θ_o and φ_o of the rows. With own axes the coefficients are in the frame of the surface's tangent, where those
-    /// of a table of directions are linear between its own views; otherwise in that of the view, where a peak stays in
-    /// its place as the azimuth changes.
-    bool own_axes_ = false;
-    std::vector<TableAxis> axes_;
+    AnisotropicViews views_;
     std::vector<float> rows_;
 };
 

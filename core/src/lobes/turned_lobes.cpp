@@ -93,7 +93,8 @@ HWY_INLINE void multiply(const std::vector<int>& from, const std::vector<int>& t
 /// A group of lobes, one in each lane.
 class LobeLanes {
   public:
-    LobeLanes(const TurnedLobe& first, int order) : first_(&first) {
+    LobeLanes(const TurnedLobe& first, int order)
+        : first_(&first), sine_(gather_each(&first.sine)), cosine_(hn::Sub(hn::Set(Floats(), 1.0F), sine_)) {
         for (std::size_t i = 0; i < 3; ++i) {
             turns_[i].load_from(first.rotation.turns()[i], order);
         }
@@ -104,8 +105,9 @@ class LobeLanes {
         const QuarterTurn& quarter = QuarterTurn::get();
         store(gather_each(&first_->terms[at(l, 0)]), band_.data(), l);
         for (int m = 1; m <= l; ++m) {
-            auto even = gather_each(&first_->terms[at(l, m)]);
-            auto odd = hn::Zero(Floats());
+            const auto term = gather_each(&first_->terms[at(l, m)]);
+            auto even = hn::Mul(cosine_, term);
+            auto odd = hn::Mul(sine_, term);
             turns_[0].apply(m, even, odd);
             store(even, band_.data(), l + m);
             store(odd, band_.data(), l - m);
@@ -129,6 +131,7 @@ class LobeLanes {
 
   private:
     const TurnedLobe* first_;
+    V<Floats> sine_, cosine_;
     std::array<TurnLanes, 3> turns_;
     alignas(64) Band band_, turned_;
 };

@@ -18,10 +18,12 @@ namespace shlight {
 /// Harmonics of a light in three colour channels.
 using ColorHarmonics = std::array<std::vector<float>, 3>;
 
-/// A lobe's cosine terms, 0 in bands that are not used, and the rotation from its frame to the light's.
+/// A lobe's cosine terms, or its sine terms, 0 in bands that are not used, and the rotation from its frame to the
+/// light's.
 struct TurnedLobe {
     std::array<float, kCosineMax> terms;
     BandRotation rotation;
+    float sine = 0;  ///< 1: the terms are of degrees -m, and those of m = 0 are 0
 };
 
 /// The number of lobes in a call is a multiple of this.
