@@ -125,13 +125,14 @@ void RecordRays::find_gradients(std::span<const double> distances, std::span<con
 
 void RecordRays::add_up(std::span<const Rgb* const> light, std::size_t parts, LightRecord& record) const {
     const std::size_t count = record.light.size();
+    const std::vector<Vec3f> ways(ways_.begin(), ways_.end());
+    std::vector<float> bases(ways.size() * kRecordTerms);
+    sh_basis(std::span<const Vec3f>(ways), kRecordOrder, std::span<float>(bases));
     std::vector<Rgb> sums;         // of parts
     std::array<Rgb, 2> pair = {};  // what a white diffuse surface reflects of two rays side by side
     Rgb variance(0);
     for (std::size_t ray = 0; ray < ways_.size(); ++ray) {
-        RecordBasis basis;
-        const Vec3f way(ways_[ray]);
-        sh_basis(std::span<const Vec3f>(&way, 1), kRecordOrder, std::span<float>(basis));
+        const float* basis = &bases[ray * kRecordTerms];
         sums.assign(parts, Rgb(0));
         for (std::size_t k = 0; k < count; ++k) {
             Rgb& sum = sums[k % parts];
