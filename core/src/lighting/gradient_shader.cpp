@@ -46,32 +46,37 @@ class View {
 
     /// Sums along an arc, at once of neighbours of one width, such as the two that make a metal's Fresnel factor.
     ArcSums sums(const Arc<double>& arc, const std::array<double, 3>& weights) const {
-        ArcSums sums{};
+        return by_width<9>([&](In<WeightedLobe> lobes) { return arc_sums(lobes, cosine_, arc, weights); });
+    }
+
+    /// α = roughness², so that dα is 2√α of roughness.
+    Vec3d by_roughness(In<Arc<double>> boundary) const {
+        const auto sum = by_width<3>([&](In<WeightedLobe> lobes) {
+            auto own = boundary_integral_by_alpha(lobes, cosine_, boundary);
+            for (double& number : own) {
+                number *= 2 * std::sqrt(lobe_width(lobes[0].shape));
+            }
+            return own;
+        });
+        return {sum[0], sum[1], sum[2]};
+    }
+
+  private:
+    /// The sum of what function(lobes) returns for neighbours of one width.
+    template <std::size_t kNumbers, class Function>
+    std::array<double, kNumbers> by_width(const Function& function) const {
+        std::array<double, kNumbers> sums{};
         for (auto first = lobes_.begin(); first != lobes_.end();) {
             const auto last = std::find_if(first, lobes_.end(), [&](const WeightedLobe& lobe) {
                 return lobe_width(lobe.shape) != lobe_width(first->shape);
             });
-            const ArcSums own = arc_sums({first, last}, cosine_, arc, weights);
+            const auto own = function(In<WeightedLobe>(first, last));
             std::transform(sums.begin(), sums.end(), own.begin(), sums.begin(), std::plus<>());
             first = last;
         }
         return sums;
     }
 
-    /// α = roughness², so that dα is 2√α of roughness.
-    Vec3d by_roughness(In<Arc<double>> boundary) const {
-        Vec3d sum(0);
-        for (const WeightedLobe& lobe : lobes_) {
-            if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape); ggx != nullptr && !boundary.empty()) {
-                const double by_alpha = boundary_integral_by_alpha(*ggx, cosine_, boundary).value;
-                const auto [red, green, blue] = lobe.weight;
-                sum += Vec3d(red, green, blue) * (2 * std::sqrt(ggx->alpha) * by_alpha);
-            }
-        }
-        return sum;
-    }
-
-  private:
     double cosine_, azimuth_;
     std::vector<WeightedLobe> lobes_;
 };

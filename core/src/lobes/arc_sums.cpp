@@ -18,12 +18,6 @@ constexpr double kRelativeError = 1e-8;
 /// Roundings of f·cos, as a part of it.
 constexpr double kRounding = 1e-14;
 
-void add_lobe(const WeightedLobe& lobe, const ArcDensity& own, ArcSums& sums) {
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-        sums[k] += lobe.weight[k / 3] * own[k % 3];
-    }
-}
-
 /// f·cos, times 1, cos ψ and sin ψ, at points of an arc.
 class DirectionSums {
   public:
@@ -37,14 +31,7 @@ class DirectionSums {
         const Vec3d u = arc_.sine * arc_.middle;
         const DirectionPath directions = {arc_.cosine * arc_.axis, u, glm::cross(arc_.axis, u), path.frame(),
                                           path.columns().flatness};
-        std::fill(values.begin(), values.end(), Values{});
-        std::array<ArcDensity, kBoundaryPoints> own;
-        for (const WeightedLobe& lobe : lobes_) {
-            direction_densities(lobe.shape, cos_o_, directions, parameters, std::span(own).first(values.size()));
-            for (std::size_t i = 0; i < values.size(); ++i) {
-                add_lobe(lobe, own[i], values[i]);
-            }
-        }
+        direction_densities(lobes_, cos_o_, directions, parameters, values);
     }
     double size(const Values& sum) const {
         double largest = 0;
@@ -80,7 +67,7 @@ bool is_lambert(const WeightedLobe& lobe) {
 }
 
 /// f·cos = z/π is a linear function of cos ψ and sin ψ.
-ArcDensity lambert_sums(const Arc<double>& arc) {
+std::array<double, 3> lambert_sums(const Arc<double>& arc) {
     const double h = arc.half;
     const double sine = std::sin(h);
     const double product = sine * std::cos(h);
@@ -97,9 +84,12 @@ ArcDensity lambert_sums(const Arc<double>& arc) {
 ArcSums arc_sums(std::span<const WeightedLobe> lobes, double cos_theta_o, const Arc<double>& arc,
                  const std::array<double, 3>& weights) {
     if (std::all_of(lobes.begin(), lobes.end(), is_lambert)) {
+        const std::array<double, 3> own = lambert_sums(arc);
         ArcSums sums{};
         for (const WeightedLobe& lobe : lobes) {
-            add_lobe(lobe, lambert_sums(arc), sums);
+            for (std::size_t k = 0; k < sums.size(); ++k) {
+                sums[k] += lobe.weight[k / 3] * own[k % 3];
+            }
         }
         return sums;
     }

@@ -7,19 +7,13 @@
 #include <array>
 #include <span>
 
+#include "lobes/boundary_kernel.h"
 #include "regions/arcs.h"
-#include "shlight/lobe_shape.h"
 
 namespace shlight {
 
-/// A lobe of a material, and what its f·cos counts in RGB.
-struct WeightedLobe {
-    LobeShape shape;
-    std::array<double, 3> weight;
-};
-
 /// ∫ f·cos (1, cos ψ, sin ψ) dψ of R, of G and of B, ψ being the angle from the arc's middle.
-using ArcSums = std::array<double, 9>;
+using ArcSums = ArcDensity;
 
 /// The sums of all lobes, which have one lobe_width(). weights: what an error of each of the three counts; the sums err
 /// by about 1e-8 of the largest weighted one.

@@ -8,8 +8,10 @@
 // docs/theory.md, 6.5, derives it.
 #pragma once
 
+#include <array>
 #include <span>
 
+#include "lobes/boundary_kernel.h"
 #include "regions/arcs.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
@@ -29,8 +31,9 @@ struct BoundaryIntegral {
 BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, std::span<const Arc<double>> arcs,
                                    double tolerance, double albedo = 1);
 
-/// ∫ ∂(f·cos)/∂α dω, in the same way, to about 1e-7 of it.
-BoundaryIntegral boundary_integral_by_alpha(const GgxShape& shape, double cos_theta_o,
-                                            std::span<const Arc<double>> arcs);
+/// ∫ ∂(f·cos)/∂α dω of RGB, to about 1e-6 of the largest of the three, or of 1e-5/α where they are less; mostly to
+/// 1e-8. lobes: one or more of one lobe_width() α; those of shapes other than GGX have none.
+std::array<double, 3> boundary_integral_by_alpha(std::span<const WeightedLobe> lobes, double cos_theta_o,
+                                                 std::span<const Arc<double>> arcs);
 
 }  // namespace shlight

@@ -19,9 +19,10 @@ Vec3d resolved_view(double cos_theta_o) {
 
 ArcPath::ArcPath(const Arc<double>& arc, const Vec3d& view, double alpha) : closed_(arc.half >= std::numbers::pi) {
     const Vec3d u = arc.sine * arc.middle;
-    even_out(arc.cosine * arc.axis + view, u, glm::cross(arc.axis, u), alpha);
     const Vec3d scale(1 / alpha, 1 / alpha, 1);
-    path_ = {columns_[0] * scale, columns_[1] * scale, columns_[2] * scale, flatness_};
+    columns_ = {(arc.cosine * arc.axis + view) * scale, u * scale, glm::cross(arc.axis, u) * scale};
+    even_out();
+    path_ = {columns_[0], columns_[1], columns_[2], flatness_};
     if (!is_closed()) {
         const double c = std::cos(arc.half);
         const double s = std::sin(arc.half);
@@ -34,13 +35,8 @@ ArcPath::ArcPath(const Arc<double>& arc, const Vec3d& view, double alpha) : clos
 /// The vectors (1, cos τ, sin τ) are null vectors of the metric (+, -, -), and so are their images under its boosts
 /// and turns. Like Jacobi's rotations, those are found that make the squared length in (h_x/α, h_y/α, h_z), a
 /// quadratic form of them, diagonal. A few sweeps suffice, as the parameter need not be the best.
-void ArcPath::even_out(const Vec3d& middle, const Vec3d& u, const Vec3d& v, double alpha) {
-    columns_ = {middle, u, v};
-    const auto form = [&](int i, int j) {
-        const Vec3d& a = columns_[i];
-        const Vec3d& b = columns_[j];
-        return (a.x * b.x + a.y * b.y) / (alpha * alpha) + a.z * b.z;
-    };
+void ArcPath::even_out() {
+    const auto form = [&](int i, int j) { return glm::dot(columns_[i], columns_[j]); };
     double largest = 1;
     for (int sweep = 0; sweep < 4 && largest > kEvenEnough; ++sweep) {
         largest = 0;
@@ -65,7 +61,7 @@ void ArcPath::boost_by_half(int axis, double speed) {
 }
 
 void ArcPath::turn_by_half(double x, double y) {
-    const double length = std::hypot(x, y);
+    const double length = std::sqrt(x * x + y * y);
     const double c = std::sqrt((length + std::abs(x)) / 2);
     if (c > 0) {
         const double other = y / (2 * c);

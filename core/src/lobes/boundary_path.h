@@ -42,7 +42,7 @@ class ArcPath {
   private:
     using Triple = std::array<double, 3>;
 
-    void even_out(const Vec3d& middle, const Vec3d& u, const Vec3d& v, double alpha);
+    void even_out();
     /// A boost of columns 0 and `axis` by half the rapidity atanh(speed).
     void boost_by_half(int axis, double speed);
     /// A turn of columns 1 and 2 by half the angle of the point (x, y).
@@ -53,7 +53,7 @@ class ArcPath {
     /// t of the point at (cos, sin) of the circle's own angle.
     double parameter(double cosine, double sine) const;
 
-    std::array<Vec3d, 3> columns_;
+    std::array<Vec3d, 3> columns_;  // x and y over α
     std::array<Triple, 3> frame_ = {Triple{1, 0, 0}, Triple{0, 1, 0}, Triple{0, 0, 1}};
     double flatness_ = 1;
     bool closed_;

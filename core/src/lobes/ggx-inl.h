@@ -19,6 +19,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
+/// 1/√x of normal floats, to about 1e-13: a float's digits, refined twice by Newton's method.
+template <class D>
+HWY_INLINE V<D> inverse_root(D d, V<D> x) {
+    const hn::Rebind<float, D> floats;
+    auto y = hn::PromoteTo(d, hn::ApproximateReciprocalSqrt(hn::DemoteTo(floats, x)));
+    const auto half = hn::Mul(x, all(d, 0.5));
+    for (int step = 0; step < 2; ++step) {
+        y = hn::Mul(y, hn::NegMulAdd(hn::Mul(half, y), y, all(d, 1.5)));
+    }
+    return y;
+}
+
 /// Fresnel factor at ω_i·h = cosine, for shapes whose factor is not 1.
 template <Fresnel kFresnel, class D>
 HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
@@ -45,6 +57,22 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     const auto parallel = hn::Mul(hn::Mul(a, a), hn::MulAdd(hn::Mul(f, f), all(d, 0.5), f));
     const auto rise = hn::MulAdd(e, hn::Add(a, all(d, head_on)), parallel);
     return hn::Max(hn::Zero(d), hn::Mul(rise, all(d, 1 / (1 - head_on * head_on))));
+}
+
+/// The shape's Fresnel factor.
+template <class D>
+HWY_INLINE V<D> fresnel_of(D d, const GgxShape& shape, V<D> cosine) {
+    switch (shape.fresnel) {
+        case Fresnel::one:
+            break;
+        case Fresnel::schlick:
+            return fresnel_in_lanes<Fresnel::schlick>(d, shape.ior, cosine);
+        case Fresnel::dip:
+            return fresnel_in_lanes<Fresnel::dip>(d, shape.ior, cosine);
+        case Fresnel::dielectric:
+            return fresnel_in_lanes<Fresnel::dielectric>(d, shape.ior, cosine);
+    }
+    return all(d, 1);
 }
 
 /// GGX with one Fresnel factor. View holds the numbers that change from view to view.
@@ -88,21 +116,19 @@ class GgxLanes {
         return with_fresnel(d, visibility, [&] HWY_ATTR { return half.cosine; });
     }
 
-    /// ∂ ln(f·cos) / ∂α, f·cos being a product of D(h), 1 / (α² h_z² + h_x² + h_y²)² but for α², and of the
-    /// visibility.
+    /// ∂(f·cos)/∂α as over_ndf() is f·cos, of F = 1; steepness: (h_⊥² - α² h_z²) / (h_⊥² + α² h_z²).
     template <class D>
-    HWY_INLINE V<D> relative_by_alpha(D d, V<D> alpha, const HalfVector<D>& half, V<D> cos_i,
-                                      const View<D>& view) const {
-        const auto one = all(d, 1);
-        const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
-        const auto up = hn::Mul(view.alpha2, hn::Mul(half.z, half.z));
-        const auto peak = hn::Div(hn::Sub(across, up), hn::Add(across, up));  // α/2 ∂ ln D / ∂α
-        const auto masked = masking(d, view.alpha2, cos_i);
-        const auto change =
-            hn::MulAdd(hn::Div(view.cosine, masked), hn::NegMulAdd(cos_i, cos_i, one),
-                       hn::Mul(hn::Div(cos_i, view.masking), hn::NegMulAdd(view.cosine, view.cosine, one)));
-        const auto all_masked = hn::MulAdd(view.cosine, masked, hn::Mul(cos_i, view.masking));
-        return hn::Sub(hn::Div(hn::Add(peak, peak), alpha), hn::Mul(alpha, hn::Div(change, all_masked)));
+    static HWY_INLINE V<D> over_ndf_by_alpha(D d, V<D> alpha, V<D> steepness, V<D> cos_i, const View<D>& view) {
+        const auto square = masking_squared(d, view.alpha2, cos_i);
+        const auto inverse = inverse_root(d, square);
+        const auto across_o = hn::Div(hn::NegMulAdd(view.cosine, view.cosine, all(d, 1)), view.masking);
+        const auto across_i = hn::Mul(view.cosine, hn::NegMulAdd(cos_i, cos_i, all(d, 1)));
+        const auto both = hn::MulAdd(view.cosine, hn::Mul(square, inverse), hn::Mul(cos_i, view.masking));
+        const auto over_both = hn::Div(all(d, 1), both);
+        const auto change = hn::MulAdd(across_i, inverse, hn::Mul(cos_i, across_o));
+        const auto peak = hn::Mul(hn::Div(all(d, 2), alpha), steepness);
+        return hn::Mul(hn::Mul(hn::Add(cos_i, cos_i), over_both),
+                       hn::NegMulAdd(hn::Mul(alpha, over_both), change, peak));
     }
 
   private:
@@ -120,7 +146,11 @@ class GgxLanes {
     /// √(α² + (1-α²) cos²θ).
     template <class D>
     static HWY_INLINE V<D> masking(D d, V<D> alpha2, V<D> cosine) {
-        return hn::Sqrt(hn::MulAdd(hn::Mul(hn::Sub(all(d, 1), alpha2), cosine), cosine, alpha2));
+        return hn::Sqrt(masking_squared(d, alpha2, cosine));
+    }
+    template <class D>
+    static HWY_INLINE V<D> masking_squared(D d, V<D> alpha2, V<D> cosine) {
+        return hn::MulAdd(hn::Mul(hn::Sub(all(d, 1), alpha2), cosine), cosine, alpha2);
     }
 
     template <class D, class CosineOfHalf>
@@ -135,55 +165,18 @@ class GgxLanes {
     double ior_;
 };
 
-/// ∂(f·cos)/∂α of a GGX lobe in place of f·cos, for integrals along a boundary.
-template <Fresnel kFresnel>
-class GgxByAlphaLanes {
-  public:
-    template <class D>
-    struct View {
-        typename GgxLanes<kFresnel>::template View<D> own;
-        V<D> alpha;
-    };
-
-    explicit GgxByAlphaLanes(const GgxShape& shape) : lobe_(shape) {}
-
-    template <class D>
-    HWY_INLINE View<D> view(D d, V<D> cos_o, V<D> alpha) const {
-        return {lobe_.view(d, cos_o, alpha), alpha};
-    }
-    template <class D>
-    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
-        return hn::Mul(lobe_.over_ndf(d, half, cos_i, view.own),
-                       lobe_.relative_by_alpha(d, view.alpha, half, cos_i, view.own));
-    }
-
-  private:
-    GgxLanes<kFresnel> lobe_;
-};
-
-/// Calls function(lanes) with Lanes<the shape's Fresnel factor>.
-template <template <Fresnel> class Lanes, class Function>
-void with_fresnel_of(const GgxShape& shape, const Function& function) {
-    switch (shape.fresnel) {
-        case Fresnel::one:
-            return function(Lanes<Fresnel::one>(shape));
-        case Fresnel::schlick:
-            return function(Lanes<Fresnel::schlick>(shape));
-        case Fresnel::dip:
-            return function(Lanes<Fresnel::dip>(shape));
-        case Fresnel::dielectric:
-            return function(Lanes<Fresnel::dielectric>(shape));
-    }
-}
-
-template <class Function>
-void with_lanes_by_alpha(const GgxShape& shape, const Function& function) {
-    with_fresnel_of<GgxByAlphaLanes>(shape, function);
-}
-
 template <class Function>
 void with_lanes_of(const GgxShape& shape, const Function& function) {
-    with_fresnel_of<GgxLanes>(shape, function);
+    switch (shape.fresnel) {
+        case Fresnel::one:
+            return function(GgxLanes<Fresnel::one>(shape));
+        case Fresnel::schlick:
+            return function(GgxLanes<Fresnel::schlick>(shape));
+        case Fresnel::dip:
+            return function(GgxLanes<Fresnel::dip>(shape));
+        case Fresnel::dielectric:
+            return function(GgxLanes<Fresnel::dielectric>(shape));
+    }
 }
 
 }  // namespace shlight::HWY_NAMESPACE
