@@ -97,7 +97,6 @@ def test_area_lamp_under_any_scale(studio: Any, scale: tuple[float, float, float
 def test_a_crowd_of_far_lamps(studio: Any) -> None:
     studio.still_life()
     studio.camera()
-    studio.resolution(32, 24)
     data = bpy.data.lights.new("Far", "POINT")
     data.energy, data.shadow_soft_size = 100.0, 0.05
     rng = np.random.default_rng(3)

@@ -182,7 +182,7 @@ TEST(DiskLight, PicturesAreIntegralsOverTheDisk) {
 }
 
 TEST(DiskLight, ShinesThroughItsSpread) {
-    for (const double spread : {0.2, pi / 3, 2.5}) {
+    for (const double spread : {0.2, 2.5}) {
         const double h = spread / 2;
         const double scale = 1 / (std::tan(h) - h);
         const auto factor = [&](double cosine) {

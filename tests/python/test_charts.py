@@ -36,9 +36,10 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stability, "REGIONS", stability.REGIONS[:1])
     monkeypatch.setattr(stability, "KINDS", {"sphere": "spheres"})
     monkeypatch.setattr(order_error, "ROUGHNESSES", [0.3])
+    monkeypatch.setattr(order_error, "ORDERS", (1, 2, 4, 8, 16))
     monkeypatch.setattr(which_method, "VIEWS", (0.5,))
     monkeypatch.setattr(which_method, "QUICK", which_method.Grid((0.02, 1.0), (0.3, 0.9), 6))
-    quick = replace(pictures.QUICK, width=24, height=15, half_samples=8, most_samples=8, rays=((1, 1),))
+    quick = replace(pictures.QUICK, width=24, height=15, half_samples=8, most_samples=8, rays=((1, 1),), rounds=1)
     monkeypatch.setattr(pictures, "QUICK", quick)
 
 
