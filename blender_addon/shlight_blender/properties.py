@@ -155,6 +155,13 @@ class SHLIGHT_MaterialSettings(bpy.types.PropertyGroup):
         options=RELATIVE_PATH,
         update=lambda settings, context: settings.id_data.update_tag(),
     )
+    tints_measured: bpy.props.BoolProperty(
+        name="Tint by Base Color",
+        description="Multiply what was measured by the colour of the material's Principled or Diffuse BSDF, with what "
+        "is linked to it",
+        default=False,
+        update=lambda settings, context: settings.id_data.update_tag(),
+    )
 
 
 CLASSES = {SHLIGHT_SceneSettings: bpy.types.Scene, SHLIGHT_MaterialSettings: bpy.types.Material}

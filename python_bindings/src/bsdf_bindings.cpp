@@ -215,10 +215,6 @@ Array<double> evaluate(const Bsdf& bsdf, const py::object& wi, const py::object&
     return out;
 }
 
-Bsdf scaled(const Bsdf& bsdf, const py::object& factor) {
-    return bsdf.scaled(color_from("factor", factor));
-}
-
 /// Whether a value is an expression of shlight.nodes: a number, a vector or a colour.
 bool is_expression(const py::handle& value) {
     return py::hasattr(value, "step") || py::hasattr(value, "as_number");
@@ -230,6 +226,11 @@ py::object shader_function(const char* name) {
 
 py::object table_function(const char* name) {
     return py::module_::import("shlight._tables").attr(name);
+}
+
+py::object scaled(const Bsdf& bsdf, const py::object& factor) {
+    return is_expression(factor) ? shader_function("scaled")(bsdf, factor)
+                                 : py::cast(bsdf.scaled(color_from("factor", factor)));
 }
 
 py::object lambert(const py::object& albedo) {
@@ -415,7 +416,8 @@ order: see from_function. Raises OSError for a file that cannot be read, ValueEr
 constexpr const char* kDoc =
     R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
 
-Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable. Colours are 0 … 1e10.)";
+Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable. Colours are 0 … 1e10.
+Multiplied by an expression of shlight.nodes, such as a picture, one is a Shader, which Scene.add_mesh takes too.)";
 
 /// The first line is the signature, as pybind11 writes those of other functions: that of shlight.nodes.principled.
 constexpr const char* kPrincipledDoc =
@@ -425,6 +427,13 @@ constexpr const char* kPrincipledDoc =
     R"(emission_strength=0.0, several_bounces=False, at=None)
 
 A Shader: Blender's Principled BSDF, see shlight.nodes.principled.)";
+
+std::vector<Bsdf> single_lobes(const Bsdf& bsdf) {
+    std::vector<Bsdf> single;
+    std::transform(bsdf.lobes().begin(), bsdf.lobes().end(), std::back_inserter(single),
+                   [](const Lobe& lobe) { return Bsdf::lobe(lobe.shape, lobe.color, lobe.weight, lobe.only_order); });
+    return single;
+}
 
 /// The lobes that are not black with colour 1, and their colours (lobes, 3).
 std::pair<Bsdf, Array<float>> uncolored(const Bsdf& bsdf) {
@@ -443,6 +452,7 @@ std::pair<Bsdf, Array<float>> uncolored(const Bsdf& bsdf) {
 
 void bind_bsdf(py::module_& m) {
     m.def("uncolored", &uncolored, py::arg("bsdf"));
+    m.def("single_lobes", &single_lobes, py::arg("bsdf"));
     m.def(
         "varying_ggx", [](const py::object& ior) { return Bsdf::varying_ggx(ior_from(ior)); }, py::arg("ior"));
     m.attr("LEAST_ROUGHNESS") = kLeastRoughness;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 #include "arguments.h"
 #include "bindings.h"
@@ -23,10 +24,11 @@ namespace {
 using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
-/// Kind of lobe, ior, result indices of weight, alpha and normal, and ShadedLobe::several_bounces.
 using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>, bool>;
-using LobeTuple =
-    std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool>;
+/// Kind of lobe, or a Bsdf of one lobe, which brings its shape and ViewWeight; ior, result indices of weight, alpha and
+/// normal, and ShadedLobe::several_bounces.
+using LobeTuple = std::tuple<std::variant<std::string, Bsdf>, double, std::uint32_t, std::optional<std::uint32_t>,
+                             std::optional<std::uint32_t>, bool>;
 /// name, number of the result, whether it is a colour
 using AovTuple = std::tuple<std::string, std::uint32_t, bool>;
 
@@ -139,7 +141,14 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
     auto shader =
         std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}});
     for (const auto& [kind, ior, weight, alpha, normal, several_bounces] : lobes) {
-        shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal, several_bounces, kind == "translucent"});
+        if (const auto* bsdf = std::get_if<Bsdf>(&kind)) {
+            const Lobe& own = bsdf->lobes().at(0);
+            shader->lobes.push_back({own.shape, weight, {}, normal, false, false, own.weight, own.only_order});
+        } else {
+            const auto& name = std::get<std::string>(kind);
+            shader->lobes.push_back(
+                {shape_of(name, ior), weight, alpha, normal, several_bounces, name == "translucent", nullptr, 0});
+        }
     }
     std::vector<std::string> aov_names;
     for (const auto& [name, value, is_color] : aovs) {

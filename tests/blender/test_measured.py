@@ -52,6 +52,31 @@ def said() -> str:
     return "\n".join(record.last.report.lines())
 
 
+def test_a_picture_at_the_base_color_tints_it(paper: Any, measured: Path) -> None:
+    """What is seen is, pixel by pixel, the untinted picture times the colour there."""
+    material = bpy.data.materials["Paper"]
+    tree, settings = material.node_tree, material.shlight
+    surface = surface_of(tree).links[0].from_node
+    checks = np.array([[[0.9, 0.2, 0.5], [0.3, 0.6, 0.1]]])
+    texture, place = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexImage", "TexCoord"))
+    texture.image, texture.interpolation, texture.extension = paper.picture(checks), "Closest", "EXTEND"
+    tree.links.new(place.outputs["Window"], texture.inputs["Vector"])
+    tree.links.new(texture.outputs["Color"], surface.inputs["Color"])
+    settings.measured_file = str(measured)
+    plain = paper.render("SHLIGHT")[..., :3]
+    settings.tints_measured = True
+    colors = np.repeat(checks, plain.shape[1] // 2, axis=1)
+    np.testing.assert_allclose(paper.render("SHLIGHT")[..., :3], plain * colors, rtol=1e-3)
+    assert "as its measured file 'paper.bin' has it, times its base colour" in said()
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfTranslucent").outputs[0], surface_of(tree))
+    np.testing.assert_array_equal(paper.render("SHLIGHT")[..., :3], plain)
+    assert "its surface is no Principled or Diffuse BSDF; its measured file is not tinted" in said()
+
+
+def surface_of(tree: Any) -> Any:
+    return tree.get_output_node("CYCLES").inputs["Surface"]
+
+
 def test_a_file_that_cannot_be_read_is_named_and_the_nodes_are_drawn(paper: Any, measured: Path) -> None:
     by_nodes = middle(paper)
     settings = bpy.data.materials["Paper"].shlight

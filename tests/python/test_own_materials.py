@@ -484,6 +484,25 @@ def test_a_picture_around_the_scene_lights_it(which: str, wall: bool, request: p
     np.testing.assert_allclose(image[0, 0, :3], expected[1], rtol=0.02 if wall else 5e-3)
 
 
+def test_a_picture_tints_a_material(isotropic: Bsdf, threads: Bsdf) -> None:
+    """Away from the edges of the tint, a pixel is the untinted one times the colour there."""
+    checks = np.random.default_rng(4).uniform(0.1, 1, (4, 4, 3)).astype(np.float32)
+    tint = shlight.nodes.image(checks, interpolation="closest", extension="extend")
+    floor = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    for bsdf in (isotropic * [1, 0.5, 0.2] + Bsdf.lambert(0.1), threads, Bsdf.layer(Bsdf.ggx(0.4, 0.3), threads)):
+        images = []
+        for material in (bsdf, bsdf * tint):
+            scene = shlight.Scene()
+            scene.add_mesh(floor, [[0, 1, 2], [0, 2, 3]], uvs=floor[:, :2] / 2 + 0.5, bsdf=material)
+            scene.add_sphere_light((0.5, -0.4, 1), 0.3, 1)
+            scene.set_environment(sky())
+            scene.set_camera_window(shlight.look_at((0, 0, 3), (0, 0, 0), (0, 1, 0)), -1, 1, -1, 1, orthographic=True)
+            images.append(shlight.render(scene, 12, 12, max_bounces=0, min_samples=4, max_samples=4)[1::3, 1::3, :3])
+        np.testing.assert_allclose(images[1], images[0] * checks, rtol=1e-3)
+    with pytest.raises(ValueError, match=r"factor must lie in \[0, 1e\+10\]"):
+        shlight.nodes.scaled(threads, -1.0)
+
+
 def _about_z(directions: Floats, angle: float) -> Floats:
     c, s = math.cos(angle), math.sin(angle)
     return np.asarray(directions @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]))

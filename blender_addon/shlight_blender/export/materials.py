@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from shlight import Bsdf, nodes
-from shlight.nodes import Shader
+from shlight.nodes import Color, Shader
 from shlight.nodes.rays import Ray, color_on_ray
 from shlight.nodes.shader import BLACK
 
@@ -22,7 +22,7 @@ from ..names import name_of
 from ..report import Effect, ExportReport
 from .emission import VaryingEmission, of_both_sides
 from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin
-from .shaders import NODES
+from .shaders import NODES, positive
 
 
 def with_aovs(shader: Shader, reader: TreeReader, tree: Any) -> Shader:
@@ -77,7 +77,7 @@ class Surface:
     @property
     def follows_uvs(self) -> bool:
         """True if it lies along the UV map for rendering, where the mesh has one."""
-        return isinstance(self.shader, Bsdf) and self.shader.is_anisotropic
+        return self.shader.is_anisotropic
 
     @property
     def operation_count(self) -> int:
@@ -129,12 +129,32 @@ def _read_measured(material: Any, report: ExportReport, surroundings: Surroundin
     except (OSError, ValueError) as error:
         report.add(place, f"its measured file cannot be read ({error}); its nodes are drawn")
         return None
-    report.add(place, f"it reflects as its measured file '{path.name}' has it, which Cycles does not read")
+    tint = _base_color(material, place, report, surroundings) if material.shlight.tints_measured else None
+    times = "" if tint is None else ", times its base colour"
+    report.add(place, f"it reflects as its measured file '{path.name}' has it{times}, which Cycles does not read")
     nodes_surface = _read(material, ExportReport(), surroundings)
     shader = nodes_surface.shader
     if isinstance(shader, Shader) and (nodes_surface.emits() or shader.aovs or shader.transparency.constant != BLACK):
         report.add(place, "emission, transparency and AOVs of its nodes are left out beside its measured file")
-    return Surface(bsdf)
+    return Surface(bsdf if tint is None else bsdf * tint)
+
+
+# Inputs that are the colour of a surface, by types of nodes.
+BASE_COLORS = {"BSDF_PRINCIPLED": "Base Color", "BSDF_DIFFUSE": "Color"}
+
+
+def _base_color(material: Any, place: str, report: ExportReport, surroundings: Surroundings) -> Color | None:
+    """The colour of the node that is the surface; None, which is reported, if that is of another type."""
+    if not uses_nodes(material):
+        return Color(*(max(c, 0.0) for c in material.diffuse_color[:3]))
+    output = material.node_tree.get_output_node("CYCLES")
+    source = None if output is None else origin(output.inputs["Surface"])
+    name = BASE_COLORS.get(source.node.type) if source is not None and source.node is not None else None
+    if source is None or name is None:
+        report.add(place, "its surface is no Principled or Diffuse BSDF; its measured file is not tinted")
+        return None
+    reader = TreeReader(material, place, report, surroundings, NODES)
+    return positive(NodeInputs(reader, source.node, source.output, source.groups).color(name))
 
 
 def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Surface:

@@ -34,10 +34,12 @@ def baking(layout: Any, context: Any) -> None:
 
 @panel("SHLIGHT_MATERIAL_PT_measured", "Measured BRDF", closed=True)
 def measured(layout: Any, context: Any) -> None:
-    """The file of a measured BRDF."""
+    """The file of a measured BRDF, and whether it is tinted."""
     settings = context.material.shlight
     layout.prop(settings, "measured_file")
     path = bpy.path.abspath(settings.measured_file, library=context.material.library)
+    if path:
+        layout.prop(settings, "tints_measured")
     if path and not Path(path).is_file():
         layout.label(text="The file is missing; the nodes are drawn", icon="ERROR")
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct ShadedLobe {
     std::optional<std::uint32_t> normal;  ///< world vector of any length; none or 0: the interpolated normal
     bool several_bounces = false;         ///< the weight compensates the energy lost between microfacets
     bool translucent = false;             ///< it reflects light from the other side than the viewer's, and is diffuse
+    std::shared_ptr<const ViewWeight> view_weight;  ///< another factor; null: 1
+    int only_order = 0;                             ///< see Lobe
 };
 
 /// An interface to a transparent body that the mesh's front side bounds: light that bounces goes on through it, and

@@ -11,7 +11,7 @@ std::vector<Lobe> lobes_of(const SurfaceShader& shader) {
         if (shaded.alpha) {
             lobes.push_back({shaded.shape, nullptr, Rgb(1), nullptr, *shaded.alpha + 1});
         } else {
-            lobes.push_back(Bsdf::lobe(shaded.shape, Rgb(1)).lobes().front());
+            lobes.push_back(Bsdf::lobe(shaded.shape, Rgb(1), nullptr, shaded.only_order).lobes().front());
         }
     }
     return lobes;

@@ -302,30 +302,33 @@ Rgb CameraSurfaces::refracted(const Surface& surface) const {
     return sum;
 }
 
-double CameraSurfaces::azimuth_of_view(const Surface& surface) const {
-    return scene_->placed().azimuth(
-        surface.hit, shading_frame(surface.point.position, surface.point.shading_normal, surface.towards_viewer));
+LobeShape CameraSurfaces::laid_out(const Surface& surface, const LobeShape& shape) const {
+    if (!is_anisotropic(shape)) {
+        return shape;
+    }
+    const ShadingFrame frame =
+        shading_frame(surface.point.position, surface.point.shading_normal, surface.towards_viewer);
+    return with_parameter(shape, scene_->placed().azimuth(surface.hit, frame));
 }
 
 void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const {
     lobes.clear();
+    const Vec3d& smooth = surface.point.shading_normal;
+    const float cosine = view_cosine(smooth, surface.towards_viewer);
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
         for (const ShadedLobe& lobe : shader->lobes) {
-            const LobeShape shape =
-                lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)}) : lobe.shape;
+            const LobeShape shape = lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)})
+                                               : laid_out(surface, lobe.shape);
             const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
             const Vec3d own = known ? lobes.back().viewers_normal() : normal(surface, lobe.normal);
-            lobes.push_back({shape, lobe.translucent ? -own : own, color(surface, lobe.weight), lobe.several_bounces,
-                             lobe.translucent});
+            const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
+            lobes.push_back({shape, lobe.translucent ? -own : own, weight * color(surface, lobe.weight),
+                             lobe.several_bounces, lobe.translucent});
         }
         return;
     }
-    const Vec3d& normal = surface.point.shading_normal;
-    const float cosine = view_cosine(normal, surface.towards_viewer);
     for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
-        // There is no program, so that no width varies.
-        const LobeShape shape = lobe.varies() ? with_parameter(lobe.shape, azimuth_of_view(surface)) : lobe.shape;
-        lobes.push_back({shape, normal, lobe.scale(cosine)});
+        lobes.push_back({laid_out(surface, lobe.shape), smooth, lobe.scale(cosine)});
     }
 }
 

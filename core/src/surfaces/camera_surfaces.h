@@ -240,8 +240,8 @@ class CameraSurfaces {
                                   : surface.towards_viewer;
     }
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
-    /// See PlacedMeshes::azimuth().
-    double azimuth_of_view(const Surface& surface) const;
+    /// A shape as it lies on the surface, see PlacedMeshes::azimuth().
+    LobeShape laid_out(const Surface& surface, const LobeShape& shape) const;
     void add_hits(const Sink& sink, Hits& hits);
     void add_hit(const Surface& surface, const Sink& sink, Hits& hits);
     /// A path through an interface, or inside back from it.

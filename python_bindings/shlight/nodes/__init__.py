@@ -28,7 +28,7 @@ from shlight.nodes.principled import (
     refraction,
     rising_lobes,
 )
-from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, translucent, transparent
+from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, scaled, translucent, transparent
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector, clamp, equal, maximum, minimum, select, sqrt
 
@@ -69,6 +69,7 @@ __all__ = [
     "reflecting_normal",
     "refraction",
     "rising_lobes",
+    "scaled",
     "select",
     "sqrt",
     "towards_viewer",

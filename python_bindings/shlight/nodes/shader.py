@@ -37,8 +37,9 @@ BUMP = math.radians(6.0)
 class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
-    kind: str  # "lambert", "ggx" with Fresnel factor 1, or the part of it that rises towards grazing angles:
-    # "ggx_schlick", "ggx_dielectric"; "ggx_dip", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"
+    kind: str | _core.Bsdf  # "lambert", "ggx" with Fresnel factor 1, or the part of it that rises towards grazing
+    # angles: "ggx_schlick", "ggx_dielectric"; "ggx_dip", "bumped_lambert", "oren_nayar", "oren_nayar_loss",
+    # "translucent"; or one lobe of a Bsdf
     weight: Color
     alpha: Value | None = None  # roughness², of GGX
     normal: Vector | None = None  # None: the smooth one
@@ -65,7 +66,7 @@ class _Listed(NamedTuple):
 
     camera: ProgramBuilder
     shadow: ProgramBuilder
-    lobes: list[tuple[str, float, int, int | None, int | None, bool]]
+    lobes: list[tuple[str | _core.Bsdf, float, int, int | None, int | None, bool]]
     emission: int | None
     transparency: int | None
     aovs: list[tuple[str, int, bool]]
@@ -124,6 +125,11 @@ class Shader:
     def attribute_names(self) -> list[str]:
         """The attributes that it reads of a mesh; known before its pictures are read."""
         return list(self._listed.camera.attributes)
+
+    @property
+    def is_anisotropic(self) -> bool:
+        """Whether it matters how the surface's tangent lies."""
+        return any(isinstance(lobe.kind, _core.Bsdf) and lobe.kind.is_anisotropic for lobe in self.lobes)
 
     @property
     def operation_count(self) -> int:
@@ -224,6 +230,14 @@ def _identity(value: Value | None) -> Any:
     step = value.step
     known_by = tuple((id(a.step), a.output) for a in step.arguments) or id(step)
     return (step.name, id(step.data), known_by, value.output)
+
+
+def scaled(bsdf: _core.Bsdf, factor: Varying) -> Shader:
+    """A Bsdf times a colour that varies."""
+    by = reflectance(factor, "factor")
+    lobes, colors = _core.uncolored(bsdf)
+    own = zip(_core.single_lobes(lobes), colors, strict=True)
+    return Shader(tuple(Lobe(lobe, color(by * tuple(c.tolist()))) for lobe, c in own))
 
 
 def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
