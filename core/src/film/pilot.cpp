@@ -74,7 +74,7 @@ std::vector<glm::dvec2> pixel_points(const Refinement& refinement, std::uint32_t
 }
 
 void look_ahead(Picture& picture, const Stopped& stopped) {
-    const auto shadow_rays = std::min(static_cast<std::uint32_t>(picture.settings.shadow_rays), kLeastShadowRays);
+    const auto shadow_rays = std::min(static_cast<std::uint32_t>(picture.settings.shadow_rays), kPreviewShadowRays);
     picture.lighting.face_tolerance = kFaceShare * picture.settings.sampling.noise_threshold;
     const Pilot pilot = pilot_of(picture, shadow_rays, stopped);
     picture.lighting.light_error = light_error(picture, pilot.reflected);

@@ -160,8 +160,7 @@ bool ProgressiveRenderer::first_pass(const Watch& caller, double latest) {
         }
     }
     seconds_per_first_ray_ = (seconds() - begin) / std::max(rays_done_.load(), 1.0);
-    const std::lock_guard lock(telling_);
-    told_.passes = 1;
+    passes_ = 1;
     return goes_on && !is_left_;
 }
 
@@ -172,6 +171,7 @@ std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped) 
     rays_left_ = refinement_.rays_left();
     const std::lock_guard lock(telling_);
     told_.noise = std::hypot(refinement_.noise(), record_error_);
+    told_.passes = passes_;  // a pass is told of with its noise
     return groups;
 }
 
@@ -193,8 +193,7 @@ bool ProgressiveRenderer::refine(const Watch& caller) {
     if (!is_whole && !is_left_) {
         run_job(job_of(refinement_.unrendered()), limit, caller.stopped);
     }
-    const std::lock_guard lock(telling_);
-    told_.passes += is_whole ? 1 : 0;
+    passes_ += is_whole ? 1 : 0;
     return !is_left_ && seconds() < limit;
 }
 
@@ -298,7 +297,7 @@ bool ProgressiveRenderer::show() {
 std::uint32_t ProgressiveRenderer::shadow_rays_at(int level) const {
     const auto most = static_cast<std::uint32_t>(picture_->settings.shadow_rays);
     if (level == 0 && refinement_.has_preview()) {
-        return std::min(most, kLeastShadowRays);
+        return std::min(most, kPreviewShadowRays);
     }
     // A pixel's many rays share the work of resolving its penumbrae.
     const std::uint32_t times = std::max(refinement_.samples(level) / std::max(refinement_.samples(0), 1U), 1U);

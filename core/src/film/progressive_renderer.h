@@ -25,9 +25,12 @@
 
 namespace shlight {
 
-/// Shadow rays of each camera ray that is added, where the settings allow as many. With fewer the ratio of a glossy
-/// lobe, whose peak may then be among none of them, is far too large where the peak is hidden.
-inline constexpr std::uint32_t kLeastShadowRays = 4;
+/// Shadow rays of each camera ray that is added, where the settings allow as many. A camera ray with its hit costs as
+/// much as some ten of them, so that fewer save little of the time. With fewer than four the ratio of a glossy lobe,
+/// whose peak may then be among none of them, is far too large where the peak is hidden.
+inline constexpr std::uint32_t kLeastShadowRays = 8;
+/// Those of a ray that later ones replace.
+inline constexpr std::uint32_t kPreviewShadowRays = 4;
 /// Camera rays × shadow rays of a light that a pixel has in a batch, at most.
 inline constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
 
@@ -97,6 +100,7 @@ class ProgressiveRenderer {
     std::vector<float> direct_;  // the image before light bounced, whose detail wide grids of pixels with bounces keep
     tbb::enumerable_thread_specific<PixelBatch> batches_;
     std::atomic<double> bounce_seconds_ = 0;  // that making them took; 0: light does not bounce, yet
+    int passes_ = 0;                          // that are whole
     double record_error_ = 0;                 // by records, as RenderReport::noise
 
     std::shared_mutex merging_;   // shared by those that write pixels

@@ -30,8 +30,6 @@ constexpr double kMostNoise = 4;
 constexpr int kNoiseReach = 2;
 /// The number of camera rays from which on a pixel's own rays tell more of its noise than those around it do.
 constexpr double kOwnRays = 64;
-/// Threshold ÷ estimated error of a pixel that has enough: few of the errors, which scatter, then exceed the threshold.
-constexpr double kMargin = 1.3;
 /// The squared error by shadow rays falls with this power of their number: 1 behind many thin things, 1.5 at one edge.
 constexpr double kNoiseDecay = 1.25;
 /// The squared error of a mean, expected by that, ÷ the squared difference between the means of its two halves.
@@ -58,7 +56,7 @@ Refinement::Refinement(int width, int height, const PixelSampling& sampling, boo
     : width_(width),
       height_(height),
       first_samples_(static_cast<std::uint32_t>(sampling.first_samples)),
-      good_enough_(sampling.noise_threshold * sampling.noise_threshold / (kMargin * kMargin)),
+      good_enough_(sampling.noise_threshold * sampling.noise_threshold),
       depth_of_field_(depth_of_field),
       states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
       noises_(states_.size()) {
