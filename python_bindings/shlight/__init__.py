@@ -20,6 +20,7 @@ from shlight._calls import explain_methods  # noqa: E402
 from shlight._core import (  # noqa: E402
     DEFAULT_TOLERANCE,
     Bsdf,
+    KeptLight,
     Light,
     RenderCancelled,
     RenderReport,
@@ -46,7 +47,7 @@ from shlight.queries import Hits, shading_frames  # noqa: E402
 from shlight.rendering import RenderResult, render  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
-for _kind in (Bsdf, Light, Scene, SceneMesh, View):
+for _kind in (Bsdf, KeptLight, Light, Scene, SceneMesh, View):
     explain_methods(_kind)
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ __all__ = [
     "Bsdfs",
     "CoefficientGradient",
     "Hits",
+    "KeptLight",
     "Light",
     "PolygonGradient",
     "RenderCancelled",

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from shlight import _core, images
 from shlight._arrays import checked_flag
 from shlight._calls import explained
-from shlight._core import RenderReport, Scene
+from shlight._core import KeptLight, RenderReport, Scene
 
 __all__ = ["RenderResult", "render"]
 
@@ -138,6 +138,7 @@ class RenderOptions(TypedDict, total=False):
     exposure: float
     threads: int
     seed: int
+    kept_light: KeptLight | None
     progress: Callable[[float], object] | None
     on_update: Callable[[Pixels, RenderReport], object] | None
 

@@ -68,6 +68,7 @@ mist: start and depth [m] and the power of its falloff. cryptomatte_levels: 2 ..
 exposure: a factor on all light of the picture and its passes, not on colours; 0 or more.
 threads: at most; 0: all cores. The image does not depend on it.
 seed: 0 ... 2^32 - 1; another one draws other rays, so that the noise of two images is independent.
+kept_light: a KeptLight, whose light the render takes as it is and adds to; None: all light is gathered anew.
 progress: is called with the finished share, 0 ... 1, about every 10 ms; returning False cancels.
 on_update: is called as on_update(image, report) once the image has pixels all over, after each pass, and a few times a
     second during long ones, with the picture as it stands; returning False ends the render, which returns the picture as it is. What progress and
@@ -77,6 +78,13 @@ return_report: return (result, report), whose report the result has, too.
 Returns a RenderResult, an array (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share
 of what is not empty: a surface, or an environment that the camera sees. Its .passes, .groups and .report hold the rest.
 Raises ValueError naming the argument, RenderCancelled.)";
+
+constexpr const char* kKeptLightDoc = R"(Light that bounces, kept from one render to the next.
+
+A render of the same scene that is given it as kept_light gathers only what it lacks: where the camera moves, light that
+bounces is there at once, and still surfaces stay as they were. Such a picture depends on those before it, within its
+noise. What changes the scene, but for its camera, and other settings that light depends on, empty it; threads, size,
+passes and the numbers of samples are none of these. A cancelled render leaves in it what it has gathered.)";
 
 /// A report with what only Python's side knows.
 struct Report {
@@ -119,13 +127,14 @@ struct Report {
     }
 };
 
-using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 6>,
+using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 7>,
                                std::array<double, 2>, std::array<double, kRenderStages.size()>, double, std::string>;
 
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
     return {core.order_counts,
-            {core.cubature_count, core.mirror_count, core.over_tolerance, core.hits, core.shadow_rays, core.passes},
+            {core.cubature_count, core.mirror_count, core.over_tolerance, core.hits, core.shadow_rays, core.records,
+             core.passes},
             {core.noise, core.seconds},
             core.stage_seconds,
             report.build_seconds,
@@ -134,10 +143,10 @@ ReportState report_state(const Report& report) {
 
 Report report_from(const ReportState& state) {
     const auto& [order_counts, counts, floats, stage_seconds, build_seconds, dark] = state;
-    const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, passes] = counts;
+    const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, records, passes] = counts;
     const auto& [noise, seconds] = floats;
-    return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays, static_cast<std::uint32_t>(passes),
-             noise, seconds, 0, stage_seconds},
+    return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays, records,
+             static_cast<std::uint32_t>(passes), noise, seconds, 0, stage_seconds},
             build_seconds,
             dark};
 }
@@ -196,7 +205,8 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
                        const py::object& transmission_bounces, const py::object& passes, const py::object& groups,
                        const py::object& aovs, const py::object& alpha_threshold, const py::object& mist,
                        const py::object& cryptomatte_levels, const py::object& exposure, const py::object& threads,
-                       const py::object& seed, const py::object& progress, const py::object& on_update) {
+                       const py::object& seed, const py::object& kept_light, const py::object& progress,
+                       const py::object& on_update) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
     const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
@@ -220,6 +230,8 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
     }
     check_render(settings, columns, rows);
     check_callable("on_update", on_update);
+    KeptLight* kept =
+        kept_light.is_none() ? nullptr : &object_from<KeptLight>("kept_light", kept_light, "KeptLight or None");
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);
     const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads, report_progress);
@@ -232,7 +244,7 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
     {
         const py::gil_scoped_release release;
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
-                        {values.mutable_data(), static_cast<std::size_t>(values.size())});
+                        {values.mutable_data(), static_cast<std::size_t>(values.size())}, kept);
     }
     const py::object told = report_of(report, build_seconds, *compiled_scene, pixels);
     expose(image, 0, 3, light_factor);
@@ -278,6 +290,9 @@ void bind_render(py::module_& m) {
         .def_property_readonly(
             "shadow_rays", [](const Report& r) { return r.core.shadow_rays; }, "Shadow rays traced.")
         .def_property_readonly(
+            "records", [](const Report& r) { return r.core.records; },
+            "Records of light that bounces that were gathered; those that a KeptLight had are none of them.")
+        .def_property_readonly(
             "passes", [](const Report& r) { return r.core.passes; }, "Passes over the picture or some of its pixels.")
         .def_property_readonly(
             "noise", [](const Report& r) { return r.core.noise; },
@@ -295,6 +310,23 @@ void bind_render(py::module_& m) {
             "light, without shadows; shadows, drawing and weighing; shadow rays, tracing; pixels, adding "
             "up.")
         .def("__repr__", &Report::repr);
+    py::class_<KeptLight>(m, "KeptLight", kKeptLightDoc, constructed_when_new())
+        .def(py::init<>())
+        .def("clear", &KeptLight::clear, "Forget all light.")
+        .def_property(
+            "max_bytes", &KeptLight::most_bytes,
+            [](KeptLight& self, const py::object& bytes) {
+                const auto most = integer_from("max_bytes", bytes, 0, std::numeric_limits<std::int64_t>::max());
+                self.set_most_bytes(static_cast<std::size_t>(most));
+            },
+            "Memory that it may take between renders, about; what no picture has used for longest goes first.")
+        .def_property_readonly("nbytes", &KeptLight::bytes, "Memory that it takes, about; 0 while a render uses it.")
+        .def_property_readonly("record_count", &KeptLight::record_count,
+                               "Records of light that are kept; 0 while a render uses them.")
+        .def("__repr__", [](const KeptLight& self) {
+            return "KeptLight(" + std::to_string(self.record_count()) + " records, " + std::to_string(self.bytes()) +
+                   " bytes)";
+        });
     m.def(
         "cryptomatte_hash", [](const std::string& name) { return cryptomatte_hash(name); }, "name"_a);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
@@ -307,7 +339,7 @@ void bind_render(py::module_& m) {
           "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
           "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "exposure"_a = 1.0, "threads"_a = 0, "seed"_a = 0,
-          "progress"_a = py::none(), "on_update"_a = py::none());
+          "kept_light"_a = py::none(), "progress"_a = py::none(), "on_update"_a = py::none());
 }
 
 }  // namespace shlight::python

@@ -276,7 +276,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         },
     ),
     "has_denoiser": (shlight.has_denoiser, {}),
-    "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
+    "KeptLight.clear": (shlight.KeptLight().clear, {}),
+    "render": (
+        shlight.render,
+        {"scene": new_scene(), **RENDER, **SETTINGS, "kept_light": shlight.KeptLight(), "return_report": True},
+    ),
     "RenderResult.save": (shlight.RenderResult({"combined": picture(4, np.float32)}).save, {"path": "a.png"}),
     "RenderResult.keys": (shlight.RenderResult({"combined": picture(4, np.float32)}).keys, {}),
     "RenderResult.items": (shlight.RenderResult({"combined": picture(4, np.float32)}).items, {}),

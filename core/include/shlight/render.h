@@ -8,6 +8,7 @@
 #include <span>
 
 #include "shlight/camera.h"
+#include "shlight/kept_light.h"
 #include "shlight/parallel.h"
 #include "shlight/render_passes.h"
 #include "shlight/render_report.h"
@@ -99,11 +100,12 @@ void check_render(const RenderSettings& settings, int width, int height);
 /// is the share of them that met a surface or, where the camera sees it, the environment, or went beside a panorama's
 /// image. The picture depends on nothing but scene, camera, size and settings, as long as no time limit ends it; it
 /// does not depend on the number of threads. A pixel that the time limit leaves without a ray is interpolated. passes:
-/// pixels × PassLayout::stride() of settings.passes, rows as of the image; the image does not depend on them. Throws as
-/// check_render does, also for an image or passes of another size; RenderCancelled when watch.progress returns false;
-/// what the watch's functions throw.
+/// pixels × PassLayout::stride() of settings.passes, rows as of the image; the image does not depend on them. kept:
+/// light that bounces, of earlier pictures and for later ones, on which the picture then depends too, within its noise;
+/// null: none is kept. Throws as check_render does, also for an image or passes of another size; RenderCancelled when
+/// watch.progress returns false; what the watch's functions throw.
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
                     const RenderSettings& settings, std::span<float> image, const RenderWatch& watch = {},
-                    std::span<float> passes = {});
+                    std::span<float> passes = {}, KeptLight* kept = nullptr);
 
 }  // namespace shlight

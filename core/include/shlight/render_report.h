@@ -25,7 +25,8 @@ struct RenderReport {
     std::uint64_t over_tolerance = 0;                         ///< of these, where the estimate exceeds the tolerance
     std::uint64_t hits = 0;                                   ///< camera rays that met a surface
     std::uint64_t shadow_rays = 0;
-    std::uint32_t passes = 0;  ///< over the picture or some of its pixels, that have ended
+    std::uint64_t records = 0;  ///< of light that bounces, which were gathered
+    std::uint32_t passes = 0;   ///< over the picture or some of its pixels, that have ended
     /// Root mean square over the pixels of the estimated errors, see PixelSampling::noise_threshold.
     double noise = 0;
     double seconds = 0;

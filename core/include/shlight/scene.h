@@ -28,7 +28,7 @@ class VisibleLamps;
 /// those without shadows are seen through surfaces.
 enum class LampViewer : std::uint8_t { camera, mirror, unblocked_mirror };
 
-class CompiledScene : public SurfaceTransparency {
+class CompiledScene : public SurfaceTransparency, public std::enable_shared_from_this<CompiledScene> {
   public:
     CompiledScene(const CompiledScene&) = delete;
     CompiledScene& operator=(const CompiledScene&) = delete;

@@ -36,8 +36,9 @@ constexpr double kShowTimes = 10;
 
 }  // namespace
 
-ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refinement, std::span<float> image,
-                                         std::span<float> passes, const RenderWatch& watch, Clock::time_point start)
+ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refinement, StoredLight& stored,
+                                         std::span<float> image, std::span<float> passes, const RenderWatch& watch,
+                                         Clock::time_point start)
     : picture_(&picture),
       image_(image),
       pass_image_(picture.layout, passes),
@@ -45,20 +46,21 @@ ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refi
       batch_samples_(picture.lighting.batch_size()),
       start_(start),
       refinement_(std::move(refinement)),
-      stored_{picture.stored_parts(),
-              {},
-              LightCells(*picture.scene, picture.lighting.materials,
-                         static_cast<std::size_t>(picture.settings.max_bounces) * picture.stored_parts())},
-      batches_([this] { return PixelBatch(*picture_, picture_->paths(bounce_seconds_ > 0 ? &stored_ : nullptr)); }) {}
+      stored_(&stored),
+      batches_([this] { return PixelBatch(*picture_, picture_->paths(bounces_ ? stored_ : nullptr)); }) {}
 
 void ProgressiveRenderer::run(const Watch& caller) {
     write_middles(caller.stopped);
     const bool bounces = picture_->settings.max_bounces > 0;
-    const bool shows_direct = !bounces || refinement_.has_preview();
+    const bool has_first = !bounces || refinement_.has_preview();
+    const bool has_bounced = bounces && has_first && !stored_->records.all().empty();
+    if (has_bounced) {
+        follow_records();
+    }
     const double share = bounces ? kShareOfPreview : 1;
-    bool goes_on = !shows_direct || first_pass(caller, share * time_limit());
+    bool goes_on = has_first && first_pass(caller, share * time_limit());
     if (bounces && !is_left_) {
-        add_bounces(caller);
+        add_bounces(has_bounced, caller);
         goes_on = first_pass(caller, time_limit());
     }
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
@@ -71,10 +73,10 @@ void ProgressiveRenderer::run(const Watch& caller) {
     pass_image_.finish(picture_->settings.threads);
 }
 
-void ProgressiveRenderer::add_bounces(const Watch& caller) {
+void ProgressiveRenderer::add_bounces(bool has_bounced, const Watch& caller) {
     const double start = seconds();
-    direct_.assign(image_.begin(), image_.end());
-    RecordPlacement placement(*picture_, direct_, stored_);
+    before_.assign(image_.begin(), image_.end());
+    RecordPlacement placement(*picture_, before_, has_bounced, *stored_);
     const double until = start + kShareOfBounces * (time_limit() - start);
     const auto has_time = [&] { return seconds() < until; };
     for (int step = kWidestRecordStep; step >= kLeastRecordStep && has_time() && !is_left_; step /= 2) {
@@ -83,8 +85,9 @@ void ProgressiveRenderer::add_bounces(const Watch& caller) {
             const std::lock_guard lock(telling_);
             told_ += report;
         }
-        follow_records(start);
-        if (watch_->on_update && refinement_.has_preview() && step >= kLeastShownStep) {
+        follow_records();
+        bounce_seconds_ = seconds() - start;
+        if (report.records > 0 && watch_->on_update && refinement_.has_preview() && step >= kLeastShownStep) {
             is_complete_ = false;  // pixels with bounces are not shown among others without
             run_job(job_of(Grid{step, 0}), std::numeric_limits<double>::infinity(), caller.stopped);
             show_grid(step, caller);
@@ -92,20 +95,21 @@ void ProgressiveRenderer::add_bounces(const Watch& caller) {
     }
     record_error_ = placement.error();
     refinement_.limit_paths();
-    follow_records(start);
+    follow_records();
+    bounce_seconds_ = seconds() - start;
 }
 
-void ProgressiveRenderer::follow_records(double start) {
-    bounce_seconds_ = seconds() - start;
+void ProgressiveRenderer::follow_records() {
+    bounces_ = true;
     for (PixelBatch& batch : batches_) {
-        batch.follow(picture_->paths(&stored_));
+        batch.follow(picture_->paths(stored_));
     }
 }
 
 void ProgressiveRenderer::show_grid(int step, const Watch& caller) {
     if (step > 1) {
         const std::unique_lock lock(merging_);
-        fill_between(step, picture_->width, picture_->height, picture_->settings.threads, direct_, image_);
+        fill_between(step, picture_->width, picture_->height, picture_->settings.threads, before_, image_);
     }
     const bool was_complete = is_complete_.exchange(true);
     if (!was_complete || seconds() - shown_at_ >= kLeastBetweenGrids) {

@@ -29,7 +29,7 @@ namespace shlight {
 /// much as some ten of them, so that fewer save little of the time. With fewer than four the ratio of a glossy lobe,
 /// whose peak may then be among none of them, is far too large where the peak is hidden.
 inline constexpr std::uint32_t kLeastShadowRays = 8;
-/// Those of a ray that later ones replace.
+/// Likewise, of a ray that later ones replace.
 inline constexpr std::uint32_t kPreviewShadowRays = 4;
 /// Camera rays × shadow rays of a light that a pixel has in a batch, at most.
 inline constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
@@ -39,9 +39,9 @@ class ProgressiveRenderer {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// passes: see render(); start: when the time limit begins.
-    ProgressiveRenderer(const Picture& picture, Refinement refinement, std::span<float> image, std::span<float> passes,
-                        const RenderWatch& watch, Clock::time_point start);
+    /// passes: see render(); stored: light that is known already, or none; start: when the time limit begins.
+    ProgressiveRenderer(const Picture& picture, Refinement refinement, StoredLight& stored, std::span<float> image,
+                        std::span<float> passes, const RenderWatch& watch, Clock::time_point start);
 
     /// Renders until every pixel has enough rays, the time is over, or on_update wants the picture as it is. Throws
     /// RenderCancelled once the caller stops it.
@@ -61,9 +61,10 @@ class ProgressiveRenderer {
     void write_middles(const Stopped& stopped);
     bool first_pass(const Watch& caller, double latest);
     int widest_step() const;
-    /// Makes records, and lets light bounce from now on.
-    void add_bounces(const Watch& caller);
-    void follow_records(double start);
+    /// Makes records, and lets light bounce from now on. has_bounced: light of records that were there is in the
+    /// image.
+    void add_bounces(bool has_bounced, const Watch& caller);
+    void follow_records();
     /// Interpolates between the pixels of a grid, and has the caller show the picture.
     void show_grid(int step, const Watch& caller);
     /// Finds the pixels that need more rays, and the picture's noise.
@@ -96,10 +97,11 @@ class ProgressiveRenderer {
     double judge_seconds_ = 0;  // of the last round
     int grid_step_ = 1;         // of the finest grid whose pixels all have rays
     Refinement refinement_;
-    StoredLight stored_;
-    std::vector<float> direct_;  // the image before light bounced, whose detail wide grids of pixels with bounces keep
+    StoredLight* stored_;
+    std::vector<float> before_;  // the image without the records, whose detail wide grids of pixels with them keep
     tbb::enumerable_thread_specific<PixelBatch> batches_;
-    std::atomic<double> bounce_seconds_ = 0;  // that making them took; 0: light does not bounce, yet
+    std::atomic<bool> bounces_ = false;       // whether light does, by now
+    std::atomic<double> bounce_seconds_ = 0;  // that making records took
     int passes_ = 0;                          // that are whole
     double record_error_ = 0;                 // by records, as RenderReport::noise
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -49,15 +50,13 @@ RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& 
       darkness_(light_count_, Rgb(0)),
       shaders_([this] { return Shader(*this); }) {}
 
-std::vector<LightRecord> RecordGatherer::gather(std::span<const Place> places, std::size_t rays_across,
-                                                std::uint32_t seed, int threads, const Stopped& stopped,
-                                                const std::function<bool()>& has_time, RenderReport& report) {
-    std::vector<LightRecord> made;
+void RecordGatherer::gather(std::span<const Place> places, std::size_t rays_across, std::uint32_t seed, int threads,
+                            const Stopped& stopped, const std::function<bool()>& has_time,
+                            std::vector<LightRecord>& made, RenderReport& report) {
     rays_per_record_ = rays_across * rays_across;
     seed_ = seed;
     for (std::size_t first = 0; first < places.size() && has_time(); first += kRecordsAtOnce) {
         const std::size_t count = std::min(kRecordsAtOnce, places.size() - first);
-        made.resize(first + count);
         records_.assign(count, {});
         distances_.assign(count * rays_per_record_, std::numeric_limits<double>::infinity());
         parallel_for(count, threads, [&](std::size_t i) {
@@ -76,6 +75,7 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const Place> places, s
         for (const Cell& cell : cells_) {
             add(cell);
         }
+        std::vector<LightRecord> finished(count);
         light_.assign(distances_.size(), darkness_.data());
         parallel_for((cells_.size() + kCellsAtOnce - 1) / kCellsAtOnce, threads, [&](std::size_t i) {
             for (std::size_t c = i * kCellsAtOnce; c < std::min((i + 1) * kCellsAtOnce, cells_.size()); ++c) {
@@ -84,16 +84,16 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const Place> places, s
         });
         parallel_for(count, threads, [&](std::size_t i) {
             const std::size_t rays = i * rays_per_record_;
-            made[first + i] = records_[i].record(std::span(distances_).subspan(rays, rays_per_record_),
-                                                 std::span(light_).subspan(rays, rays_per_record_), light_count_,
-                                                 paths_.stored->parts);
-            made[first + i].cell = places[first + i].cell;
+            finished[i] = records_[i].record(std::span(distances_).subspan(rays, rays_per_record_),
+                                             std::span(light_).subspan(rays, rays_per_record_), light_count_,
+                                             paths_.stored->parts);
+            finished[i].cell = places[first + i].cell;
         });
+        std::ranges::move(finished, std::back_inserter(made));
     }
     for (Shader& shader : shaders_) {
         report += std::exchange(shader.report, {});
     }
-    return made;
 }
 
 void RecordGatherer::meet(std::size_t record, std::uint32_t seed, Shader& shader) {

@@ -68,9 +68,11 @@ std::size_t rank(const WorldCell& cell) {
 RecordPlacement::Finder::Finder(const Picture& picture, const PathSettings& paths)
     : surfaces(*picture.scene, picture.lighting.materials, paths), hits(picture.lighting.lobe_stride) {}
 
-RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> image, StoredLight& stored)
+RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> image, bool has_bounced,
+                                 StoredLight& stored)
     : picture_(&picture),
       image_(image),
+      has_bounced_(has_bounced),
       stored_(&stored),
       paths_(picture.paths(&stored)),
       lattice_(*picture.scene),
@@ -82,6 +84,7 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
       }),
       gatherer_(*picture.scene, picture.lighting, paths_, picture.settings.shadow_rays > 0, stored.cells,
                 stored.parts > 1 ? picture.parts : kWholeLight) {
+    stored.records.begin_picture();
     double sum = 0;
     for (std::size_t i = 0; i < image.size() / 4; ++i) {
         sum += mean(color_of(image, i), Rgb(1));
@@ -108,20 +111,33 @@ RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const s
     }
     error_ = std::sqrt(errors / static_cast<double>(std::max<std::size_t>(pixels, 1)));
     std::vector<Wanted> wanted = find_wanted(std::move(seen), step, stopped);
+    const auto lacking =
+        std::ranges::stable_partition(wanted, [&](const Wanted& own) { return stored_->records.use(own.place.cell); });
     std::vector<RecordGatherer::Place> places;
-    std::ranges::transform(wanted, std::back_inserter(places), &Wanted::place);
+    std::ranges::transform(lacking, std::back_inserter(places), &Wanted::place);
+    std::vector<LightRecord> made;
     RenderReport report;
-    auto made =
-        gatherer_.gather(places, rays_across(threshold_), picture_->settings.seed, threads, stopped, has_time, report);
-    wanted.resize(made.size());
+    try {
+        gatherer_.gather(places, rays_across(threshold_), picture_->settings.seed, threads, stopped, has_time, made,
+                         report);
+    } catch (const RenderCancelled&) {
+        add(made, lacking);
+        throw;
+    }
+    report.records = made.size();
+    add(made, lacking);
+    wanted.resize(wanted.size() - lacking.size() + made.size());
+    stored_->records.index();
+    shrink_wrong(wanted, step);
+    return report;
+}
+
+void RecordPlacement::add(std::span<LightRecord> made, std::span<const Wanted> wanted) {
     for (std::size_t i = 0; i < made.size(); ++i) {
         const double edge = std::ldexp(1.0, wanted[i].level);
         made[i].limit_radius(kReach * made[i].radius, kLeastSteps * edge, kMostSteps * edge);
         stored_->records.add(std::move(made[i]));
     }
-    stored_->records.index();
-    shrink_wrong(wanted, step);
-    return report;
 }
 
 RecordPlacement::Row RecordPlacement::find(int row, int step, Finder& finder) const {
@@ -157,7 +173,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     }
     const std::size_t pixel = finder.pixels[surface.ray];
     const RecordedLight found = stored_->records.look_up(surface.point, number_of_all(surface.bounces));
-    const Rgb all = color_of(image_, pixel) + albedo * found.mean;
+    const Rgb all = color_of(image_, pixel) + (has_bounced_ ? Rgb(0) : albedo * found.mean);
     const Rgb scale = glm::sqrt(all * all + static_cast<float>(least_square_)) / glm::max(albedo, Rgb(1e-6F));
     row.errors += found.weight > 0 ? mean(found.variance + found.noise, scale * scale) : 0.0;
     if (found.weight >= kEnough && step < kLeastRefined) {
@@ -172,7 +188,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
 }
 
 std::vector<RecordPlacement::Wanted> RecordPlacement::find_wanted(std::vector<Seen> seen, int step,
-                                                                  const Stopped& stopped) const {
+                                                                  const Stopped& stopped) {
     const auto order = [](const Seen& one) { return std::tuple(one.cell.place, one.cell.kind); };
     std::ranges::stable_sort(seen, {}, order);
     std::vector<std::span<const Seen>> cells;
@@ -188,8 +204,11 @@ std::vector<RecordPlacement::Wanted> RecordPlacement::find_wanted(std::vector<Se
     });
     std::vector<Wanted> all;
     std::unordered_set<WorldCell, WorldCellHash> taken;
-    for (const std::optional<Wanted>& own : found) {
-        if (own && taken.insert(own->place.cell).second) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::optional<Wanted>& own = found[i];
+        if (!own) {
+            stored_->records.spare(cells[i].front().cell);
+        } else if (!stored_->records.has(own->place.cell) && taken.insert(own->place.cell).second) {
             all.push_back(*own);
         }
     }
@@ -209,14 +228,14 @@ std::optional<RecordPlacement::Wanted> RecordPlacement::wanted(std::span<const S
     }
     const SurfacePoint point = found.value_or(nearest.point);
     const WorldCell cell = lattice_.cell(point, level);
-    if (stored_->records.has(cell)) {
-        return std::nullopt;
-    }
     Rgb allowed(0);
     for (const Seen& own : seen) {
         allowed += own.allowed / static_cast<float>(seen.size());
     }
-    if (step >= kLeastRefined && step < kLeastWhole) {
+    if (step >= kLeastRefined && step < kLeastWhole && !stored_->records.knows(cell)) {
+        if (stored_->records.spares(seen.front().cell)) {
+            return std::nullopt;
+        }
         const RecordedLight light = stored_->records.look_up(point, number_of_all(nearest.bounces));
         if (light.weight >= kEnough && mean(light.variance + light.noise, allowed * allowed) <= 1) {
             return std::nullopt;
@@ -227,12 +246,12 @@ std::optional<RecordPlacement::Wanted> RecordPlacement::wanted(std::span<const S
 
 void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {
     const std::span<const LightRecord> all = stored_->records.all();
-    const std::size_t first = all.size() - wanted.size();
     const std::size_t whole = number_of_all(0);
     std::vector<double> radius(all.size());
     std::transform(all.begin(), all.end(), radius.begin(), [](const LightRecord& record) { return record.radius; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-        const LightRecord& own = all[first + i];
+        const std::size_t own_number = stored_->records.number_of(wanted[i].place.cell);
+        const LightRecord& own = all[own_number];
         const RecordBasis basis = reflected_basis(own.normal);
         const double least = kLeastPixels / step * std::ldexp(1.0, wanted[i].level);
         stored_->records.for_each_near(
@@ -240,7 +259,7 @@ void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {
                 const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
                 const Rgb noise = own.noise * own.noise + other.noise * other.noise;
                 const Rgb allowed = wanted[i].allowed * wanted[i].allowed + kNoiseVariances * noise;
-                if (number != first + i && mean(difference * difference, allowed) > 1) {
+                if (number != own_number && mean(difference * difference, allowed) > 1) {
                     const double distance = glm::distance(own.position, other.position);
                     radius[number] = std::min(radius[number], std::max(distance, least));
                 }

@@ -26,11 +26,13 @@ namespace shlight {
 
 class RecordPlacement {
   public:
-    /// image: of direct light, RGBA, or black. picture, stored: must outlive this.
-    RecordPlacement(const Picture& picture, std::span<const float> image, StoredLight& stored);
+    /// image: of direct light, RGBA, or black; has_bounced: with the light that is stored already. picture, stored:
+    /// must outlive this.
+    RecordPlacement(const Picture& picture, std::span<const float> image, bool has_bounced, StoredLight& stored);
 
     /// Makes the records of cells as wide as pixels are apart by a step, after those of all wider ones, or some of them
-    /// if there is no time for all. Returns what that took. Throws RenderCancelled once stopped.
+    /// if there is no time for all. Returns what that took. Throws RenderCancelled once stopped; records that are whole
+    /// by then are stored.
     RenderReport add_grid(int step, const Stopped& stopped, const std::function<bool()>& has_time);
     /// Root mean square over the pixels that were last looked at of the errors by the records before, see
     /// RenderReport::noise.
@@ -72,9 +74,10 @@ class RecordPlacement {
     Row find(int row, int step, Finder& finder) const;
     void look_at(const CameraSurfaces::Surface& surface, int step, Finder& finder, Row& row) const;
     /// The records that cells want, in an order that has nothing to do with where they are.
-    std::vector<Wanted> find_wanted(std::vector<Seen> seen, int step, const Stopped& stopped) const;
-    /// The record that the cell of some surfaces wants; none: it has one, or needs none.
+    std::vector<Wanted> find_wanted(std::vector<Seen> seen, int step, const Stopped& stopped);
+    /// The record that the cell of some surfaces wants, also if it has one; none: those around suffice.
     std::optional<Wanted> wanted(std::span<const Seen> seen, int step) const;
+    void add(std::span<LightRecord> made, std::span<const Wanted> wanted);
     /// The radius of records that are wrong at the place of one of the last ones ends there.
     void shrink_wrong(std::span<const Wanted> wanted, int step);
 
@@ -85,6 +88,7 @@ class RecordPlacement {
 
     const Picture* picture_;
     std::span<const float> image_;
+    bool has_bounced_;
     StoredLight* stored_;
     PathSettings paths_;
     WorldLattice lattice_;

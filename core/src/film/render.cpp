@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/checks.h"
+#include "film/light_loan.h"
 #include "film/pilot.h"
 #include "film/pixel_batch.h"
 #include "film/progressive_renderer.h"
@@ -78,13 +79,14 @@ void check_render(const RenderSettings& settings, int width, int height) {
 
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
                     const RenderSettings& settings, std::span<float> image, const RenderWatch& watch,
-                    std::span<float> passes) {
+                    std::span<float> passes, KeptLight* kept) {
     check_render(settings, width, height);
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     check_size("image", image.size(), 4 * pixels);
     check_size("passes", passes.size(), PassLayout(settings.passes).stride() * pixels);
     const auto start = ProgressiveRenderer::Clock::now();
     std::optional<Picture> picture;
+    std::optional<LightLoan> light;
     std::optional<ProgressiveRenderer> renderer;
     std::atomic<bool> is_prepared = false;
     const auto work = [&](const Watch& caller) {
@@ -92,9 +94,10 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
         picture.emplace(scene, camera, width, height, settings, pixel_points(refinement, settings.seed),
                         refinement.has_preview() ? 1 : 0, caller.stopped);
         look_ahead(*picture, caller.stopped);
+        light.emplace(kept, *picture);
         std::fill(image.begin(), image.end(), 0.0F);
         std::fill(passes.begin(), passes.end(), 0.0F);
-        renderer.emplace(*picture, std::move(refinement), image, passes, watch, start);
+        renderer.emplace(*picture, std::move(refinement), light->light(), image, passes, watch, start);
         is_prepared = true;
         renderer->run(caller);
     };

@@ -13,6 +13,7 @@ RenderReport& RenderReport::operator+=(const RenderReport& part) {
     hits += part.hits;
     over_tolerance += part.over_tolerance;
     shadow_rays += part.shadow_rays;
+    records += part.records;
     std::ranges::transform(stage_seconds, part.stage_seconds, stage_seconds.begin(), std::plus<>());
     return *this;
 }

@@ -2,6 +2,7 @@
 #include "surfaces/light_cells.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "shlight/sampling.h"
 
@@ -14,6 +15,9 @@ constexpr double kCellWidth = 0.177;
 /// Places in a cell that are tried for one, and the numbers that places have, about.
 constexpr std::uint32_t kTrials = 4;
 constexpr std::uint32_t kMostNumbers = 1024;
+
+/// Memory of a cell beside itself.
+constexpr std::size_t kNodeBytes = 32;
 
 std::uint32_t signs(const Vec3f& direction) {
     return (direction.x < 0 ? 1U : 0U) | (direction.y < 0 ? 2U : 0U) | (direction.z < 0 ? 4U : 0U);
@@ -83,6 +87,15 @@ void LightCells::add(const WorldCell& key, std::span<const Rgb> light, const Kno
 LightCells::Known LightCells::known(const WorldCell& key) const {
     const auto found = cells_.find(key);
     return found == cells_.end() ? Known() : found->second.known;
+}
+
+std::size_t LightCells::bytes() const {
+    return light_.size() * sizeof(Rgb) + cells_.size() * (sizeof(std::pair<WorldCell, Cell>) + kNodeBytes);
+}
+
+void LightCells::clear() {
+    cells_.clear();
+    light_ = {};
 }
 
 std::span<const Rgb> LightCells::look_up(const WorldCell& key) const {

@@ -44,6 +44,9 @@ class LightCells {
     /// light: the mean of further samples, by parts.
     void add(const WorldCell& key, std::span<const Rgb> light, const Known& further);
     Known known(const WorldCell& key) const;
+    /// Memory of all, about.
+    std::size_t bytes() const;
+    void clear();
     /// The light, until some is added; empty if none is known.
     std::span<const Rgb> look_up(const WorldCell& key) const;
 

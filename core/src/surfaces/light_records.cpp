@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -16,6 +18,10 @@ namespace {
 constexpr float kAcross = 10;
 /// Cosine of the turn of the surface beyond which a record does not count.
 constexpr float kLeastCosine = 0.7F;
+/// Memory of a record beside itself: of the cells that it is in.
+constexpr std::size_t kIndexBytes = 256;
+/// Memory of a cell that is spared beside itself.
+constexpr std::size_t kNodeBytes = 24;
 /// Cosine of the angle of normals that count as the same.
 constexpr double kEqualNormals = 1 - 1e-9;
 
@@ -119,10 +125,67 @@ std::span<const LightRecords::Sphere> LightRecords::Grid::at(const Vec3d& positi
     return std::span(spheres).subspan(begin[i], begin[i + 1] - begin[i]);
 }
 
-void LightRecords::index() {
+void LightRecords::add(LightRecord record) {
+    record.used = picture_;
+    record.whole_radius = record.radius;
+    cells_[record.cell] = records_.size();
+    records_.push_back(std::move(record));
+}
+
+bool LightRecords::has(const WorldCell& cell) const {
+    const auto found = cells_.find(cell);
+    return found != cells_.end() && records_[found->second].used == picture_;
+}
+
+bool LightRecords::use(const WorldCell& cell) {
+    const auto found = cells_.find(cell);
+    if (found != cells_.end()) {
+        LightRecord& record = records_[found->second];
+        record.used = picture_;
+        record.radius = record.whole_radius;
+    }
+    return found != cells_.end();
+}
+
+void LightRecords::begin_picture() {
+    ++picture_;
+    grids_.clear();
+}
+
+std::size_t LightRecords::bytes() const {
+    const std::size_t count = records_.empty() ? 0 : records_.front().light.size();
+    return records_.size() * (sizeof(LightRecord) + count * (sizeof(RecordHarmonics) + 4 * sizeof(Rgb)) + kIndexBytes) +
+           spared_.size() * (sizeof(WorldCell) + kNodeBytes);
+}
+
+void LightRecords::keep_latest(std::size_t most_bytes) {
+    spared_.clear();
+    const std::size_t all = records_.size();
+    const std::size_t most = all == 0 ? 0 : most_bytes / (bytes() / all);
+    if (all <= most) {
+        return;
+    }
+    std::ranges::sort(records_, std::greater<>(),
+                      [](const LightRecord& record) { return std::tuple(record.used, record.radius); });
+    for (std::size_t i = 0; i < all; ++i) {
+        const auto cell = cells_.find(records_[i].cell);
+        if (i < most) {
+            cell->second = i;
+        } else {
+            cells_.erase(cell);
+        }
+    }
+    records_.resize(most);
+    grids_.clear();
+}
+
+void LightRecords::index(std::uint32_t oldest) {
     std::map<int, std::vector<std::pair<std::uint64_t, std::uint32_t>>> places;  // by the exponent of the cell
     for (std::size_t number = 0; number < records_.size(); ++number) {
         const LightRecord& record = records_[number];
+        if (record.used < oldest) {
+            continue;
+        }
         const int exponent = std::ilogb(2 * record.radius) + 1;
         const double cell = std::ldexp(1.0, exponent);
         const glm::i64vec3 first = cell_of(record.position - record.radius, cell);

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -36,13 +37,15 @@ struct LightRecord {
     /// Sectors of directions along the surface.
     static constexpr std::size_t kSectors = 8;
 
-    WorldCell cell;  ///< that it stands for
+    WorldCell cell;          ///< that it stands for
+    std::uint32_t used = 0;  ///< number of the last picture that has asked for it
     Vec3d position;
     Vec3d normal;         ///< unit
     Vec3d along, across;  ///< unit, at right angles to the normal and each other
     /// How far the surface is free of others that stand on it, by sector [m].
     std::array<float, kSectors> free;
     double radius = 0;
+    double whole_radius = 0;  ///< before any other record was found to differ
     /// Parts (StoredLight) of what has bounced at most once, twice ….
     std::vector<RecordHarmonics> light;
     /// Radiance that a white diffuse surface with the record's normal reflects of it, and its change along each axis
@@ -71,15 +74,31 @@ struct RecordedLight {
 class LightRecords {
   public:
     std::span<const LightRecord> all() const { return records_; }
-    void add(LightRecord record) {
-        cells_.insert(record.cell);
-        records_.push_back(std::move(record));
-    }
-    bool has(const WorldCell& cell) const { return cells_.contains(cell); }
+    void add(LightRecord record);
+    /// Whether there is the record of a cell, of whichever picture.
+    bool knows(const WorldCell& cell) const { return cells_.contains(cell); }
+    /// Whether the picture uses it.
+    bool has(const WorldCell& cell) const;
+    /// Whether there is the record of a cell, which the picture then uses as if it were added now.
+    bool use(const WorldCell& cell);
+    std::size_t number_of(const WorldCell& cell) const { return cells_.at(cell); }
+    /// Notes for this picture and later ones that the records around suffice for a cell.
+    void spare(const WorldCell& cell) { spared_.insert(cell); }
+    bool spares(const WorldCell& cell) const { return spared_.contains(cell); }
+    /// Indexes all records, of whichever picture.
+    void index_all() { index(0); }
+    /// Leaves all records to earlier pictures: the one that begins uses none of them yet.
+    void begin_picture();
+    /// Memory of all, about.
+    std::size_t bytes() const;
+    /// Keeps so many bytes of records, and no cells that were spared: the records that were used last, and of these the
+    /// ones that reach farthest.
+    void keep_latest(std::size_t most_bytes);
     /// Lets a record reach less far.
     void shrink(std::size_t record, double radius) { records_[record].radius = radius; }
-    /// To be called once records were added or shrunk, before any of the functions below.
-    void index();
+    /// To be called once records were used, added or shrunk, before any of the functions below, which know those that
+    /// the picture uses.
+    void index() { index(picture_); }
 
     /// reflected[i]: what a white diffuse surface with this normal reflects of the records' light number first + i.
     /// Returns false if no record is near.
@@ -121,10 +140,14 @@ class LightRecords {
         std::span<const Sphere> at(const Vec3d& position) const;
     };
     static bool is_free(const LightRecord& record, const Vec3d& position);
+    /// Makes the table of spheres of the records that pictures from the oldest one on have used.
+    void index(std::uint32_t oldest);
     class Diffuse;
 
     std::vector<LightRecord> records_;
-    std::unordered_set<WorldCell, WorldCellHash> cells_;  // of the records
+    std::unordered_map<WorldCell, std::size_t, WorldCellHash> cells_;  // the number of each one's record
+    std::unordered_set<WorldCell, WorldCellHash> spared_;
+    std::uint32_t picture_ = 0;
     std::vector<Grid> grids_;
 };
 
