@@ -52,6 +52,7 @@ class PictureMaker:
         self._number = 0  # of the job; a picture of another is out of date
         self._ended = False
         self._thread: threading.Thread | None = None
+        self._kept_light: Any = None  # a shlight.KeptLight, once there is a job
         self.picture: Picture | None = None
         self.error = ""
 
@@ -92,6 +93,8 @@ class PictureMaker:
     def _make(self, job: Job, number: int) -> None:
         import shlight
 
+        self._kept_light = self._kept_light or shlight.KeptLight()
+
         def show(image: NDArray[np.float32], status: str) -> bool:
             pixels = np.minimum(image[::-1], np.float32(LARGEST))
             with self._changed:
@@ -110,6 +113,7 @@ class PictureMaker:
                 job.scene,
                 job.frame.width,
                 job.frame.height,
+                kept_light=self._kept_light,
                 progress=goes_on,
                 on_update=lambda image, report: show(image, status_of(report)),
                 **(with_features({}) if job.denoises else {}),

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Quaternion
 
+import shlight
 from shlight_blender import viewport
 from shlight_blender.picture_maker import PictureMaker
 
@@ -17,12 +19,13 @@ LONGEST_WAIT, CALM = 600, 4  # ticks
 found = {"updated": {}, "differs": {}, "anew": {}}
 shown = []  # RenderedViewports, the latest last
 jobs, ended = [], []
+gathered = []  # records of light that bounces, by each picture that was done
 
 
 def watch():
     """Notes the viewports that are made, and the jobs that they give to their threads."""
     make = viewport.RenderedViewport.__init__
-    start, make_picture = PictureMaker.start, PictureMaker._make
+    start, make_picture, render = PictureMaker.start, PictureMaker._make, shlight.render
 
     def init(self, engine):
         make(self, engine)
@@ -36,7 +39,13 @@ def watch():
         make_picture(self, job, number)
         ended.append(job)
 
+    def rendered(*arguments, **options):
+        result = render(*arguments, **options)
+        gathered.append(result.report.records)
+        return result
+
     viewport.RenderedViewport.__init__ = init
+    shlight.render = rendered
     PictureMaker.start, PictureMaker._make = started, made
 
 
@@ -185,6 +194,7 @@ def steps():
         found["differs"][name] = float(np.abs(pixels() - before).max())
     yield from compare_with_a_viewport_made_anew()
     yield from compare_with_final_render()
+    yield from light_that_bounces()
     yield from two_viewports()
 
 
@@ -220,6 +230,33 @@ def compare_with_final_render():
     render.image_settings.file_format = "OPEN_EXR"
     render.filepath = str(FOLDER / "final.exr")
     bpy.ops.render.render(write_still=True)
+
+
+def light_that_bounces():
+    """It is kept when the view moves, and gathered anew when a lamp does."""
+    settings = bpy.context.scene.shlight
+    settings.preview_max_bounces, settings.preview_noise_threshold, settings.preview_max_samples = 2, 0.1, 4
+    area().spaces[0].shading.type = "RENDERED"
+    yield from settled()
+    count = len(gathered)
+    for change in (lambda: turn(0.02), lambda: turn(0.04), lambda: setattr(bpy.data.lights["Light"], "energy", 300)):
+        change()
+        yield from settled()
+    found["gathered"] = [gathered[count - 1], *gathered[count:]]
+    changed = pixels()
+    area().spaces[0].shading.type = "SOLID"
+    yield
+    area().spaces[0].shading.type = "RENDERED"
+    yield from settled()
+    found["lit anew"] = bool(np.array_equal(changed, pixels()))
+    area().spaces[0].shading.type = "SOLID"
+    settings.preview_max_bounces = 0
+    yield
+
+
+def turn(angle):
+    view = area().spaces[0].region_3d
+    view.view_rotation = Quaternion((0, 0, 1), angle) @ view.view_rotation
 
 
 def two_viewports():

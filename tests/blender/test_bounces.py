@@ -3,12 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+import bpy
+import numpy as np
 import pytest
 
+import shlight
 from shlight_blender.background import use_cycles
 from shlight_blender.compare.render import bounces_of
+from shlight_blender.export import Changes, ExportedScene, changes_of, everything, viewport_settings, whole_frame
+from shlight_blender.picture_maker import Job, PictureMaker
 
 
 def compare(studio: Any, samples: int = 1024, **bounds: float) -> None:
@@ -57,3 +63,59 @@ def test_translucent_surfaces_take_light_from_behind(studio: Any, bounces: int) 
     studio.scene.shlight.max_bounces = bounces
     compare(studio, mean=5e-3, error=2e-3)
     assert studio.messages(most=99) == []
+
+
+def test_a_viewport_keeps_light_while_its_view_moves_alone(
+    studio: Any, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    studio.plane(8, studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8)))
+    box = studio.box((1, 1, 1), studio.material("ShaderNodeBsdfDiffuse", "Red", Color=(0.8, 0.1, 0.1)))
+    lamp = studio.area(150, (-3, 2, 2), size=1, rotation_euler=(0.9, 0, -2.2))
+    studio.plain_world((0.2, 0.3, 0.4))
+    studio.camera()
+    studio.scene.shlight.preview_max_bounces = 2
+    reports: list[shlight.RenderReport] = []
+    render = shlight.render
+
+    def watched(*arguments: Any, **options: Any) -> shlight.RenderResult:
+        result = render(*arguments, **options)
+        reports.append(result.report)
+        return result
+
+    monkeypatch.setattr(shlight, "render", watched)
+    exported, maker, changes = ExportedScene(), PictureMaker(lambda: None), everything()
+
+    def note(_: Any, depsgraph: Any) -> None:
+        changes.add(changes_of(depsgraph))
+
+    def seen_after(change: Callable[[], object]) -> Any:
+        """The picture, and that of a viewport made anew."""
+        nonlocal changes
+        change()
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        exported.look_from(depsgraph, frame=whole_frame(40, 30))
+        exported.update(depsgraph, changes)
+        changes = Changes()
+        job = Job(exported.scene, whole_frame(40, 30), viewport_settings(studio.scene))
+        maker._make(job, maker._number)
+        other = PictureMaker(lambda: None)
+        other._make(job, 0)
+        assert not maker.error
+        return maker.picture.pixels, other.picture.pixels
+
+    bpy.app.handlers.depsgraph_update_post.append(note)
+    request.addfinalizer(lambda: bpy.app.handlers.depsgraph_update_post.remove(note))
+    seen_after(lambda: None)
+    own, anew = seen_after(lambda: setattr(studio.scene.camera, "location", (3.05, -6, 4)))
+    assert reports[-2].records <= 0.5 * reports[-1].records
+    assert 0 < np.abs(own - anew).mean() <= 0.02 * anew.mean()
+    surface = box.data.materials[0].node_tree.nodes["Diffuse BSDF"].inputs
+    for change in (
+        lambda: setattr(lamp, "location", (-3, 2, 2.5)),
+        lambda: setattr(lamp.data, "energy", 100),
+        lambda: setattr(box, "location", (0.5, 0, 0)),
+        lambda: setattr(surface["Color"], "default_value", (0, 1, 0, 1)),
+        lambda: studio.plain_world((0.5, 0.3, 0.2)),
+    ):
+        np.testing.assert_array_equal(*seen_after(change))

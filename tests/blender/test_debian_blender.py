@@ -294,7 +294,7 @@ PARTS = {
 def test_the_rendered_viewport(tmp_path: Path) -> None:
     """It follows whatever changes, exports no more than that, and shows what a final render shows."""
     # Small, since each change draws a picture of the whole viewport.
-    code, output = run_in_window(script="debian_viewport.py", folder=tmp_path, size=(640, 480))
+    code, output = run_in_window(script="debian_viewport.py", folder=tmp_path, size=(640, 480), seconds=480)
     assert code == 0, output
     assert "Traceback" not in output, output
     found = json.loads((tmp_path / "found.json").read_text())
@@ -306,6 +306,10 @@ def test_the_rendered_viewport(tmp_path: Path) -> None:
     # The corners of pixels' squares are rounded otherwise, which a few rays at edges tell.
     seen = np.load(tmp_path / "viewport.npy")[::-1]
     assert rel_mse(seen, read_exr(tmp_path / "final.exr")) <= 1e-4
+    first, *moved, lit = found["gathered"]
+    assert max(moved) <= 0.25 * first, found["gathered"]
+    assert lit >= 0.5 * first, found["gathered"]
+    assert found["lit anew"], "light from before a lamp was changed is left"
     assert found["viewports"] == 1
     assert found["threads"] == 0
     check_screen(tmp_path, found["region"])
