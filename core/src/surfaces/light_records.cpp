@@ -21,7 +21,7 @@ constexpr float kLeastCosine = 0.7F;
 /// Memory of a record beside itself: of the cells that it is in.
 constexpr std::size_t kIndexBytes = 256;
 /// Memory of a cell that is spared beside itself.
-constexpr std::size_t kNodeBytes = 24;
+constexpr std::size_t kSparedBytes = 24;
 /// Cosine of the angle of normals that count as the same.
 constexpr double kEqualNormals = 1 - 1e-9;
 
@@ -155,7 +155,7 @@ void LightRecords::begin_picture() {
 std::size_t LightRecords::bytes() const {
     const std::size_t count = records_.empty() ? 0 : records_.front().light.size();
     return records_.size() * (sizeof(LightRecord) + count * (sizeof(RecordHarmonics) + 4 * sizeof(Rgb)) + kIndexBytes) +
-           spared_.size() * (sizeof(WorldCell) + kNodeBytes);
+           spared_.size() * (sizeof(WorldCell) + kSparedBytes);
 }
 
 void LightRecords::keep_latest(std::size_t most_bytes) {
