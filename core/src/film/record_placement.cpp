@@ -111,10 +111,12 @@ RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const s
     }
     error_ = std::sqrt(errors / static_cast<double>(std::max<std::size_t>(pixels, 1)));
     std::vector<Wanted> wanted = find_wanted(std::move(seen), step, stopped);
-    const auto lacking =
-        std::ranges::stable_partition(wanted, [&](const Wanted& own) { return stored_->records.use(own.place.cell); });
+    const auto first_lacking = std::stable_partition(
+        wanted.begin(), wanted.end(), [&](const Wanted& own) { return stored_->records.use(own.place.cell); });
+    const std::span lacking(first_lacking, wanted.end());
     std::vector<RecordGatherer::Place> places;
-    std::ranges::transform(lacking, std::back_inserter(places), &Wanted::place);
+    std::transform(lacking.begin(), lacking.end(), std::back_inserter(places),
+                   [](const Wanted& own) { return own.place; });
     std::vector<LightRecord> made;
     RenderReport report;
     try {
@@ -249,21 +251,20 @@ void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {
     const std::size_t whole = number_of_all(0);
     std::vector<double> radius(all.size());
     std::transform(all.begin(), all.end(), radius.begin(), [](const LightRecord& record) { return record.radius; });
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-        const std::size_t own_number = stored_->records.number_of(wanted[i].place.cell);
+    for (const Wanted& one : wanted) {
+        const std::size_t own_number = stored_->records.number_of(one.place.cell);
         const LightRecord& own = all[own_number];
         const RecordBasis basis = reflected_basis(own.normal);
-        const double least = kLeastPixels / step * std::ldexp(1.0, wanted[i].level);
-        stored_->records.for_each_near(
-            wanted[i].place.surface, [&](std::size_t number, const LightRecord& other, float) {
-                const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
-                const Rgb noise = own.noise * own.noise + other.noise * other.noise;
-                const Rgb allowed = wanted[i].allowed * wanted[i].allowed + kNoiseVariances * noise;
-                if (number != own_number && mean(difference * difference, allowed) > 1) {
-                    const double distance = glm::distance(own.position, other.position);
-                    radius[number] = std::min(radius[number], std::max(distance, least));
-                }
-            });
+        const double least = kLeastPixels / step * std::ldexp(1.0, one.level);
+        stored_->records.for_each_near(one.place.surface, [&](std::size_t number, const LightRecord& other, float) {
+            const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
+            const Rgb noise = own.noise * own.noise + other.noise * other.noise;
+            const Rgb allowed = one.allowed * one.allowed + kNoiseVariances * noise;
+            if (number != own_number && mean(difference * difference, allowed) > 1) {
+                const double distance = glm::distance(own.position, other.position);
+                radius[number] = std::min(radius[number], std::max(distance, least));
+            }
+        });
     }
     for (std::size_t i = 0; i < radius.size(); ++i) {
         stored_->records.shrink(i, radius[i]);
