@@ -198,12 +198,16 @@ def steps():
     yield from two_viewports()
 
 
-def compare_with_a_viewport_made_anew():
-    before = pixels()
+def make_viewport_anew():
     area().spaces[0].shading.type = "SOLID"
     yield
     area().spaces[0].shading.type = "RENDERED"
     yield from settled()
+
+
+def compare_with_a_viewport_made_anew():
+    before = pixels()
+    yield from make_viewport_anew()
     found["anew"] = bool(np.array_equal(before, pixels()))
     bpy.ops.screen.screenshot(filepath=str(FOLDER / "window.png"))
     found["region"] = [region().x, region().y, region().width, region().height]
@@ -244,10 +248,7 @@ def light_that_bounces():
         yield from settled()
     found["gathered"] = [gathered[count - 1], *gathered[count:]]
     changed = pixels()
-    area().spaces[0].shading.type = "SOLID"
-    yield
-    area().spaces[0].shading.type = "RENDERED"
-    yield from settled()
+    yield from make_viewport_anew()
     found["lit anew"] = bool(np.array_equal(changed, pixels()))
     area().spaces[0].shading.type = "SOLID"
     settings.preview_max_bounces = 0
