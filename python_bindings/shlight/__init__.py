@@ -65,7 +65,8 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    """The names that users call; the modules that the package is made of stay out of completion."""
+    return [*__all__, "__doc__", "__version__"]
 
 
 __version__ = "0.1.0"

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("distributed", reason="the farm needs Dask: pip install 'shlight[farm]'")
 psutil = pytest.importorskip("psutil")
@@ -50,6 +51,25 @@ def build_scene():
     scene.camera = bpy.context.object
     bpy.app.handlers.frame_change_pre.append(spoil)
     return scene
+"""
+
+DISPLAYED = """
+    bpy.data.objects["Plane"].scale = (0.1, 0.1, 1)
+    scene.render.film_transparent = True
+    scene.view_settings.view_transform, scene.view_settings.exposure = "Filmic", 1
+    scene.frame_set(20)
+    return scene
+"""
+
+SAVED_BY_BLENDER = """
+import runpy, sys
+import bpy, shlight_blender
+shlight_blender.register()
+scene = runpy.run_path(sys.argv[1])["build_scene"]()
+scene.render.filepath = sys.argv[2]
+bpy.ops.render.render(write_still=True)
+import os
+os._exit(0)
 """
 
 STEREO = """
@@ -248,6 +268,17 @@ def test_tiles_are_the_same_pixels_everywhere(scene: Path, tmp_path: Path) -> No
     assert alone.shape == (128, 192, 4)
     np.testing.assert_array_equal(farm, alone)
     assert np.abs(farm - whole).mean() <= 0.005 * whole.mean()
+
+
+def test_a_picture_for_display_is_the_one_that_blender_saves(scene: Path, tmp_path: Path) -> None:
+    """The frame of the file, the view transform, and alpha."""
+    scene.write_text(scene.read_text().replace("    return scene", DISPLAYED))
+    assert run(scene, "--out", tmp_path / "farm.png")[0] == 0
+    assert "0 rendered, 1 kept" in run(scene, "--out", tmp_path / "farm.png")[1]
+    run(scene, tmp_path / "blender.png", code=SAVED_BY_BLENDER)
+    farm, blender = (np.asarray(Image.open(tmp_path / f"{name}.png")) for name in ("farm", "blender"))
+    assert len(np.unique(blender[..., 3])) > 1
+    np.testing.assert_array_equal(farm, blender)
 
 
 def test_views_are_eyes_and_cameras(scene: Path, tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from .source import SceneFile, describe
 
 
 def open_scene_file(
-    path: Path, *, views: tuple[str, ...], settings: Mapping[str, Any], scale: float, sent: bool
+    path: Path, *, views: tuple[str, ...], settings: Mapping[str, Any], scale: float, sent: bool, for_display: bool
 ) -> SceneFile:
     """The source of a file's pictures, which is opened in a process of its own.
 
@@ -29,7 +29,7 @@ def open_scene_file(
         raise ValueError(f"scale must be above 0 and at most 100, got {scale}")
     aside = CallsAside(_described)
     try:
-        found: SceneFile | Exception = aside.call(path, views, settings, scale, sent)
+        found: SceneFile | Exception = aside.call(path, views, settings, scale, sent, for_display)
     except EOFError:
         raise CommandError(f"{path}: Blender crashed when it opened it", 1) from None
     finally:

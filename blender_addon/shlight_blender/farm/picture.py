@@ -150,8 +150,13 @@ KEPT_ATTRIBUTES = "cryptomatte/"
 CHANGED = ("use_multiview", "use_border", "border_min_x", "border_max_x", "border_min_y", "border_max_y", "filepath")
 
 
-def render_picture(scene: Any, frame: int, view: str, box: Box | None, messages: tuple[str, ...]) -> Rendered:
-    """The channels that Blender would write; a file without passes has RGBA."""
+def render_picture(
+    scene: Any, frame: int, view: str, box: Box | None, for_display: bool, messages: tuple[str, ...]
+) -> Rendered:
+    """The channels that Blender would write; a file without passes has RGBA.
+
+    for_display: RGB with the scene's view transform, 0 … 1, and alpha where the film is transparent.
+    """
     scene.frame_set(frame)
     render = scene.render
     with (
@@ -160,7 +165,7 @@ def render_picture(scene: Any, frame: int, view: str, box: Box | None, messages:
         kept(render.views, "use", "file_suffix"),
     ):
         try:
-            _set_up(scene, view, box, Path(folder))
+            _set_up(scene, view, box, for_display, Path(folder))
             with quiet():
                 bpy.ops.render.render(write_still=True)
         except RuntimeError as error:  # how Blender's operators fail
@@ -170,13 +175,13 @@ def render_picture(scene: Any, frame: int, view: str, box: Box | None, messages:
     return Rendered(channels, pixels, attributes, (*messages, *record.last.report.lines()))
 
 
-def _set_up(scene: Any, view: str, box: Box | None, folder: Path) -> None:
+def _set_up(scene: Any, view: str, box: Box | None, for_display: bool, folder: Path) -> None:
     """One view, one tile, and one file in a folder."""
     render = scene.render
     multiview = render.use_multiview
     leave_plain(render)
     render.use_multiview = multiview
-    _choose_format(scene)
+    _choose_format(scene, for_display)
     if multiview:
         render.image_settings.views_format = "INDIVIDUAL"
         for number, other in enumerate(render.views):
@@ -190,8 +195,14 @@ def _set_up(scene: Any, view: str, box: Box | None, folder: Path) -> None:
     render.filepath = str(folder / "picture")
 
 
-def _choose_format(scene: Any) -> None:
-    """A layer of the file for each pass, where there are more than one."""
+def _choose_format(scene: Any, for_display: bool) -> None:
+    """PNG for display, else OpenEXR with a layer of the file for each pass, where there are more than one."""
+    if for_display:
+        settings = scene.render.image_settings
+        settings.file_format = "PNG"
+        settings.color_mode = "RGBA" if scene.render.film_transparent else "RGB"
+        settings.color_depth = "8"
+        return
     layers = [layer for layer in scene.view_layers if layer.use]
     if len(layers) > 1 or any(layer_passes(scene, layer) for layer in layers):
         choose_layers(scene.render.image_settings)
@@ -211,7 +222,9 @@ def _read(path: Path) -> tuple[tuple[str, ...], Any, dict[str, str]]:
     """Channels of all parts of a file."""
     import OpenImageIO as oiio
 
-    source = oiio.ImageInput.open(str(path))
+    as_stored = oiio.ImageSpec()
+    as_stored.attribute("oiio:UnassociatedAlpha", 1)
+    source = oiio.ImageInput.open(str(path), as_stored)
     if source is None:
         raise OSError(f"{path}: {oiio.geterror().strip()}")
     names: list[str] = []

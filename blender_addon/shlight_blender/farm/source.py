@@ -131,7 +131,9 @@ class SceneFile:
     file_hash: str  # of the scene alone
     versions: tuple[str, str]  # of shlight and Blender
     sent: bool
+    for_display: bool  # as PNG, with the scene's view transform
     key: str
+    frame: int
     views: tuple[tuple[str, str], ...]
     size: tuple[int, int]
     messages: tuple[str, ...]
@@ -145,7 +147,7 @@ class SceneFile:
         scene = self._scene(root)
         scene.render.threads_mode = "FIXED" if threads else "AUTO"
         scene.render.threads = threads or scene.render.threads
-        rendered = render_picture(scene, frame, view, box, self.messages)
+        rendered = render_picture(scene, frame, view, box, self.for_display, self.messages)
         check(self.files, root)  # one that vanished meanwhile would be magenta in the picture
         return rendered
 
@@ -184,7 +186,9 @@ class SceneFile:
             raise RuntimeError(f"'{lost[0]}' is missing although it was sent")
 
 
-def describe(path: Path, views: tuple[str, ...], settings: Mapping[str, Any], scale: float, sent: bool) -> SceneFile:
+def describe(
+    path: Path, views: tuple[str, ...], settings: Mapping[str, Any], scale: float, sent: bool, for_display: bool
+) -> SceneFile:
     """Opens it in this process, and finds what it needs. SceneError, ValueError or OSError where that cannot be."""
     from .picture import apply_settings, closed_to_others, open_for_farm, set_size, views_of
 
@@ -196,7 +200,8 @@ def describe(path: Path, views: tuple[str, ...], settings: Mapping[str, Any], sc
     messages = [*closed_to_others(scene), *(f"File '{name}' is missing" for name in missing)]
     hashes = {os.path.relpath(name, path.parent): hash_of(Path(name)) for name in found}
     versions = _versions()
-    decisive = [hashes, sorted((name, str(value)) for name, value in settings.items()), scale, versions, missing]
+    set_values = sorted((name, str(value)) for name, value in settings.items())
+    decisive = [hashes, set_values, scale, versions, missing, for_display]
     return SceneFile(
         str(path),
         tuple(settings.items()),
@@ -205,7 +210,9 @@ def describe(path: Path, views: tuple[str, ...], settings: Mapping[str, Any], sc
         hashes[path.name],
         versions,
         sent,
+        for_display,
         hashlib.sha256(json.dumps(decisive).encode()).hexdigest(),
+        max(scene.frame_current, 0),
         views_of(scene, views),
         size,
         tuple(messages),

@@ -31,8 +31,6 @@ def _work(arguments: list[str]) -> None:
     if is_still(scene := Path(values["scene"])):
         _render_still(scene, values, size, environment)
         return
-    if values["frames"] is None:
-        raise CommandError("the following arguments are required for Blender scenes: --frames", 2)
     if size or environment:
         raise CommandError("--size and --environment are for models and scripts that use shlight", 2)
     tls = [values.pop(name) for name in ("tls_ca", "tls_cert", "tls_key")]
@@ -108,15 +106,16 @@ def _scale(text: str, force: bool) -> float:
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="shlight render",
-        description="Renders frames of a Blender scene to OpenEXR files: in processes on this machine, or on "
+        description="Renders frames of a Blender scene to OpenEXR or PNG files: in processes on this machine, or on "
         "the workers of a Dask scheduler. Frames whose files are whole and of this scene and these settings are kept. "
         "Of a model (.glb, .gltf, .obj, .ply), or a script that builds a shlight.Scene, it renders one picture.",
     )
     add: Any = parser.add_argument
     add("scene", help="a Blender file, a script with a function build_scene(), or a model")
-    add("--frames", type=_frames, metavar="A-B[:STEP]", help="frames such as 7, 1-250, 1-250:10 or 1,5,9")
-    add("--out", required=True, metavar="FILE", help="files such as shot_####.exr; #### becomes the frame. Of a model "
-        "also .png")  # fmt: skip
+    add("--frames", type=_frames, metavar="A-B[:STEP]", help="frames such as 7, 1-250, 1-250:10 or 1,5,9 (default: "
+        "the one at which the file was saved)")  # fmt: skip
+    add("--out", required=True, metavar="FILE", help="files such as shot_####.exr; #### becomes the frame. .png: for "
+        "display, with the scene's view transform")  # fmt: skip
     add("--size", type=_size, metavar="WxH", help="of the picture of a model, in pixels (default: 960x640)")
     add("--environment", metavar="FILE", help="a picture of all directions around a model, such as sky.exr or sky.hdr")
     add("--views", action="append", default=[], metavar="NAME,…", help="views of the scene, or cameras (default: all "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""OpenEXR files of pictures: written whole or by tiles, and known again by the hash in their header."""
+"""Files of pictures, OpenEXR or PNG: written whole or by tiles, and known again by the hash in their header."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shlight.farm.frames import PNG
 from shlight.farm.pictures import Box, Picture, Rendered
 from shlight.images import complete_or_absent
 
@@ -21,9 +22,9 @@ ROWS = 256  # that are read at once
 
 
 def encode(picture: Picture, rendered: Rendered) -> bytes:
-    """The file of a picture: 32-bit float OpenEXR, compressed without loss. OSError where it cannot be made."""
+    """The file of a picture: 32-bit float OpenEXR, compressed without loss, or PNG. OSError if it cannot be made."""
     with tempfile.TemporaryDirectory(prefix="shlight-") as folder:
-        path = Path(folder) / "picture.exr"
+        path = Path(folder) / picture.path.with_stem("picture").name
         target = _opened(path, _spec(picture, rendered))
         done = target.write_image(np.ascontiguousarray(rendered.pixels))
         if not (target.close() and done):
@@ -104,7 +105,9 @@ def _rows(source: Any, spec: Any, top: int) -> NDArray[Any] | None:
 def _spec(picture: Picture, rendered: Rendered) -> Any:
     import OpenImageIO as oiio
 
-    spec = oiio.ImageSpec(*picture.size, len(rendered.channels), "float")
+    is_png = picture.path.suffix == PNG
+    spec = oiio.ImageSpec(*picture.size, len(rendered.channels), "uint8" if is_png else "float")
+    spec.attribute("oiio:UnassociatedAlpha", int(is_png))
     spec.channelnames = rendered.channels
     # OpenImageIO would add the time; without it the same picture is the same file.
     fixed = {"compression": "zip", "DateTime": "1970:01:01 00:00:00", KEY: picture.key}
@@ -116,7 +119,7 @@ def _spec(picture: Picture, rendered: Rendered) -> Any:
 def _opened(path: Path, spec: Any) -> Any:
     import OpenImageIO as oiio
 
-    target = oiio.ImageOutput.create("openexr")
+    target = oiio.ImageOutput.create(path.suffix.removeprefix(".") or "exr")
     if target is None or not target.open(os.fspath(path), spec):
         raise OSError(f"{path}: {(target or oiio).geterror().strip()}")
     return target

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 MOST_FRAMES = 1 << 20  # the largest frame of Blender
+PNG = ".png"  # the ending of pictures for display; others are OpenEXR
 
 
 def parse_frames(text: str) -> list[int]:
@@ -40,8 +41,8 @@ def check_out(out: str, frames: int) -> None:
     path = Path(out)
     if not path.name or "\0" in out:
         raise ValueError("out must name a file")
-    if path.suffix not in ("", ".exr"):
-        raise ValueError(f"out must end in .exr, got '{out}'")
+    if path.suffix not in ("", ".exr", PNG):
+        raise ValueError(f"out must end in .exr or .png, got '{out}'")
     if "#" in str(path.parent):
         raise ValueError("out must have # in the file's name only")
     if frames > 1 and "#" not in path.name:

@@ -13,6 +13,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from shlight.farm.frames import PNG
+
 Box = tuple[int, int, int, int]  # left, top, right, bottom in pixels, row 0 on top
 
 # A picture of more pixels is rendered in tiles of this side, which takes a process some 170 MB beside the scene.
@@ -36,6 +38,10 @@ class Source(Protocol):
     @property
     def key(self) -> str:
         """A hash of everything that decides about pixels, but frame, view and tiles."""
+
+    @property
+    def frame(self) -> int:
+        """The frame at which the scene's file was saved."""
 
     @property
     def views(self) -> Sequence[tuple[str, str]]:
@@ -89,7 +95,7 @@ def boxes_of(size: tuple[int, int], tile: int | None) -> tuple[Box | None, ...]:
 
 
 def picture_of(source: Source, frame: int, view: str, path: Path, tile: int | None) -> Picture:
-    """The picture of a frame, with the hash that its file bears."""
-    boxes = boxes_of(source.size, tile)
+    """The picture of a frame, with the hash that its file bears. Those for display have no tiles."""
+    boxes = boxes_of(source.size, 0 if path.suffix == PNG else tile)
     text = json.dumps([source.key, frame, view, source.size, boxes])
     return Picture(frame, view, path, source.size, hashlib.sha256(text.encode()).hexdigest(), boxes)

@@ -17,7 +17,7 @@ from typing import Any
 from shlight.commands import CommandError, work_folder
 from shlight.farm import files
 from shlight.farm.cluster import Workers, check_dask, connected, default_workers
-from shlight.farm.frames import check_out, file_of
+from shlight.farm.frames import PNG, check_out, file_of
 from shlight.farm.one_process import OneProcess
 from shlight.farm.pictures import Picture, Rendered, Source, picture_of
 from shlight.farm.progress import FarmProgress
@@ -38,7 +38,7 @@ class Outcome:
 
 def render_frames(
     scene: str | os.PathLike[str] | Source,
-    frames: Iterable[int],
+    frames: Iterable[int] | None,
     out: str | os.PathLike[str],
     *,
     views: Sequence[str] = (),
@@ -53,29 +53,32 @@ def render_frames(
     threads: int | None = None,
     retries: int = 1,
 ) -> Outcome:
-    """Renders frames to OpenEXR files, which appear under their names when they are whole.
+    """Renders frames to files, which appear under their names when they are whole.
 
     scene: a Blender file, a script with a function build_scene(), or a Source of pictures.
-    out: the files' name, in which #### becomes the number of the frame.
+    frames: their numbers; None: the one at which the scene's file was saved.
+    out: the files' name, in which #### becomes the number of the frame: OpenEXR files, or where it ends in .png
+        pictures for display, with the scene's view transform.
     views: views of the scene, or names of cameras; none: all views, or the scene's camera.
     settings: properties of the scene such as {"shlight.noise_threshold": 0.005}. scale: of width and height.
     scheduler: the address of a Dask scheduler; None: `workers` processes on this machine, as many as it has cores
         unless it is given, and for a single picture, or with 0 workers, one process without Dask.
     tls: for all connections. send: workers get the file and what it needs sent, and need not see it.
     force: files that are whole and of this scene and these settings are rendered too.
-    tile: pictures are rendered in tiles of this side; None: those of more than 2^24 pixels in tiles of 1024; 0: none.
-        Pixels depend on it within the noise threshold.
+    tile: OpenEXR files are rendered in tiles of this side; None: those of more than 2^24 pixels in tiles of 1024; 0:
+        none. Pixels depend on it within the noise threshold.
     threads: of each worker; None: all cores, shared by the workers where they are on this machine.
     retries: renders of a frame after one that has failed.
 
     Prints progress. A frame that fails ends up in `failed`, and the others go on. Raises ValueError or CommandError
     where nothing can be rendered, and OSError where a file cannot be written; what is whole then stays.
     """
-    wanted, out = list(dict.fromkeys(frames)), os.fspath(out)
+    wanted, out = None if frames is None else list(dict.fromkeys(frames)), os.fspath(out)
+    frame_count = 1 if wanted is None else len(wanted)
     _check(wanted, out, scheduler, workers, tile, retries)
     if tls is not None:
         tls.check()
-    several = scheduler is not None or (workers or 0) > 0 or (workers is None and len(wanted) > 1)
+    several = scheduler is not None or (workers or 0) > 0 or (workers is None and frame_count > 1)
     if several:
         check_dask()
     with ExitStack() as stack:
@@ -86,10 +89,10 @@ def render_frames(
 
         # Workers need as long to begin as Blender needs to open the file.
         aside = stack.enter_context(ThreadPoolExecutor(1))
-        opening = aside.submit(_opened, scene, views, dict(settings or {}), scale, send)
-        client = connect(len(wanted)) if several else None
+        opening = aside.submit(_opened, scene, views, dict(settings or {}), scale, send, Path(out).suffix == PNG)
+        client = connect(frame_count) if several else None
         source = opening.result()
-        outcome, pictures = _pictures(source, wanted, out, tile, force)
+        outcome, pictures = _pictures(source, wanted or [source.frame], out, tile, force)
         progress = FarmProgress(len(pictures), len(outcome.kept))
         tasks = [Task(picture, number) for picture in pictures for number in range(len(picture.boxes))]
         if tasks:
@@ -127,11 +130,13 @@ def _pictures(
 
 
 def _check(
-    frames: list[int], out: str, scheduler: str | None, workers: int | None, tile: int | None, retries: int
+    frames: list[int] | None, out: str, scheduler: str | None, workers: int | None, tile: int | None, retries: int
 ) -> None:
-    if not frames or not all(isinstance(frame, int) and frame >= 0 for frame in frames):
+    if frames is not None and not (frames and all(isinstance(frame, int) and frame >= 0 for frame in frames)):
         raise ValueError("frames must be at least one whole number, and none negative")
-    check_out(out, len(frames))
+    check_out(out, 1 if frames is None else len(frames))
+    if tile and Path(out).suffix == PNG:
+        raise ValueError("tile is for OpenEXR files")
     for name, value in (("workers", workers), ("tile", tile), ("retries", retries)):
         if value is not None and (not isinstance(value, int) or value < 0):
             raise ValueError(f"{name} must be a whole number, 0 or more, got {value}")
@@ -142,14 +147,19 @@ def _check(
 
 
 def _opened(
-    scene: str | os.PathLike[str] | Source, views: Sequence[str], settings: dict[str, Any], scale: float, send: bool
+    scene: str | os.PathLike[str] | Source,
+    views: Sequence[str],
+    settings: dict[str, Any],
+    scale: float,
+    send: bool,
+    for_display: bool,
 ) -> Source:
     """The source that an installed package makes of a scene's file."""
     if not isinstance(scene, (str, os.PathLike)):
         return scene
     openers = metadata.entry_points(group=SOURCES)
     source: Source = next(iter(openers)).load()(
-        Path(scene), views=tuple(views), settings=settings, scale=scale, sent=send
+        Path(scene), views=tuple(views), settings=settings, scale=scale, sent=send, for_display=for_display
     )
     return source
 
