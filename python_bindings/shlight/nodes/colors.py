@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from operator import add, mul, sub
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -94,43 +96,30 @@ def rgb_from_hsl(c: Vector) -> Color:
     return Color(*((component - 0.5) * chroma + light for component in (r, g, b)))
 
 
-def _overlay(t: Value) -> Callable[[Value, Value], Value]:
+def _overlay(a: Value, b: Value, t: Value) -> Value:
     rest = 1.0 - t
-    return lambda a, b: select(a < 0.5, a * (rest + 2.0 * t * b), 1.0 - (rest + 2.0 * t * (1.0 - b)) * (1.0 - a))
+    return select(a < 0.5, a * (rest + 2.0 * t * b), 1.0 - (rest + 2.0 * t * (1.0 - b)) * (1.0 - a))
 
 
-def _dodge(t: Value) -> Callable[[Value, Value], Value]:
-    def blended(a: Value, b: Value) -> Value:
-        below = 1.0 - t * b
-        lit = select(below > 0.0, minimum(a / below, 1.0), 1.0)
-        return select(equal(a, 0.0), a, lit)
-
-    return blended
+def _dodge(a: Value, b: Value, t: Value) -> Value:
+    below = 1.0 - t * b
+    return select(equal(a, 0.0), a, select(below > 0.0, minimum(a / below, 1.0), 1.0))
 
 
-def _burn(t: Value) -> Callable[[Value, Value], Value]:
-    def blended(a: Value, b: Value) -> Value:
-        below = (1.0 - t) + t * b
-        return select(below > 0.0, clamp(1.0 - (1.0 - a) / below), 0.0)
-
-    return blended
+def _burn(a: Value, b: Value, t: Value) -> Value:
+    below = (1.0 - t) + t * b
+    return select(below > 0.0, clamp(1.0 - (1.0 - a) / below), 0.0)
 
 
-def _soft(t: Value) -> Callable[[Value, Value], Value]:
-    def blended(a: Value, b: Value) -> Value:
-        screen = 1.0 - (1.0 - b) * (1.0 - a)
-        return (1.0 - t) * a + t * ((1.0 - a) * b * a + a * screen)
-
-    return blended
+def _soft(a: Value, b: Value, t: Value) -> Value:
+    screen = 1.0 - (1.0 - b) * (1.0 - a)
+    return (1.0 - t) * a + t * ((1.0 - a) * b * a + a * screen)
 
 
-def _divided(t: Value) -> Callable[[Value, Value], Value]:
-    return lambda a, b: select(equal(b, 0.0), a, (1.0 - t) * a + t * a / b)
-
-
-def _hue(a: Vector, b: Vector, t: Value) -> Color:
+def _hue(a: Vector, b: Vector, t: Value, *, saturated: bool = False) -> Color:
+    """The hue of b, and its saturation too where that is wanted."""
     of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
-    changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_a.y, of_a.z)), t)
+    changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_b.y if saturated else of_a.y, of_a.z)), t)
     return _map(lambda new, old: select(equal(of_b.y, 0.0), old, new), changed, a)
 
 
@@ -145,35 +134,38 @@ def _value(a: Vector, b: Vector, t: Value) -> Color:
     return rgb_from_hsv(Vector(of_a.x, of_a.y, (1.0 - t) * of_a.z + t * of_b.z))
 
 
-def _color(a: Vector, b: Vector, t: Value) -> Color:
-    of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
-    changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_b.y, of_a.z)), t)
-    return _map(lambda new, old: select(equal(of_b.y, 0.0), old, new), changed, a)
-
-
 Blend = Callable[[Vector, Vector, Value], Color]
+
+
+def _by_channel(blend: Callable[[Value, Value, Value], Value]) -> Blend:
+    return lambda a, b, t: _map(lambda x, y: blend(x, y, t), a, b)
+
+
+def _share_of(blend: Callable[[Value, Value], Value]) -> Blend:
+    """Lays what two colours make of each other over the first."""
+    return lambda a, b, t: _lerp(a, _map(blend, a, b), t)
+
+
 # Blend modes by Blender's names: b is laid over a with weight t.
 BLENDS: dict[str, Blend] = {
     "MIX": _lerp,
-    "DARKEN": lambda a, b, t: _lerp(a, _map(minimum, a, b), t),
-    "MULTIPLY": lambda a, b, t: _lerp(a, _map(lambda x, y: x * y, a, b), t),
-    "BURN": lambda a, b, t: _map(_burn(t), a, b),
-    "LIGHTEN": lambda a, b, t: _lerp(a, _map(maximum, a, b), t),
-    "SCREEN": lambda a, b, t: _map(lambda x, y: 1.0 - ((1.0 - t) + t * (1.0 - y)) * (1.0 - x), a, b),
-    "DODGE": lambda a, b, t: _map(_dodge(t), a, b),
-    "ADD": lambda a, b, t: _lerp(a, _map(lambda x, y: x + y, a, b), t),
-    "OVERLAY": lambda a, b, t: _map(_overlay(t), a, b),
-    "SOFT_LIGHT": lambda a, b, t: _map(_soft(t), a, b),
-    "LINEAR_LIGHT": lambda a, b, t: _map(lambda x, y: x + t * (2.0 * y - 1.0), a, b),
-    "DIFFERENCE": lambda a, b, t: _lerp(a, _map(lambda x, y: abs(x - y), a, b), t),
-    "EXCLUSION": lambda a, b, t: _map(
-        lambda x: maximum(x, 0.0), _lerp(a, _map(lambda x, y: x + y - 2.0 * x * y, a, b), t)
-    ),
-    "SUBTRACT": lambda a, b, t: _lerp(a, _map(lambda x, y: x - y, a, b), t),
-    "DIVIDE": lambda a, b, t: _map(_divided(t), a, b),
+    "DARKEN": _share_of(minimum),
+    "MULTIPLY": _share_of(mul),
+    "BURN": _by_channel(_burn),
+    "LIGHTEN": _share_of(maximum),
+    "SCREEN": _by_channel(lambda x, y, t: 1.0 - ((1.0 - t) + t * (1.0 - y)) * (1.0 - x)),
+    "DODGE": _by_channel(_dodge),
+    "ADD": _share_of(add),
+    "OVERLAY": _by_channel(_overlay),
+    "SOFT_LIGHT": _by_channel(_soft),
+    "LINEAR_LIGHT": _by_channel(lambda x, y, t: x + t * (2.0 * y - 1.0)),
+    "DIFFERENCE": _share_of(lambda x, y: abs(x - y)),
+    "EXCLUSION": _by_channel(lambda x, y, t: maximum((1.0 - t) * x + t * (x + y - 2.0 * x * y), 0.0)),
+    "SUBTRACT": _share_of(sub),
+    "DIVIDE": _by_channel(lambda x, y, t: select(equal(y, 0.0), x, (1.0 - t) * x + t * x / y)),
     "HUE": _hue,
     "SATURATION": _saturation,
-    "COLOR": _color,
+    "COLOR": partial(_hue, saturated=True),
     "VALUE": _value,
 }
 

@@ -91,52 +91,41 @@ def transparent_depth() -> Value:
     return read("transparent_depth")
 
 
-def _rows(source: str, v: Vector, *, columns: int) -> Vector:
-    numbers = []
-    for row in range(3):
-        terms = [read(source, 4 * row + column) * component for column, component in enumerate(v)]
-        offset = [read(source, 4 * row + 3)] if columns == 4 else []
-        numbers.append(sum((*terms[1:], *offset), start=terms[0]))
-    return Vector(*numbers)
+def _product(source: str, v: Vector, *, transposed: bool = False, moved: bool = False) -> Vector:
+    """A matrix, or its transpose, times a vector; moved: plus the last column."""
+
+    def component(i: int) -> Value:
+        first, *rest = (read(source, 4 * j + i if transposed else 4 * i + j) * own for j, own in enumerate(v))
+        return sum((*rest, *([read(source, 4 * i + 3)] if moved else [])), start=first)
+
+    return Vector(component(0), component(1), component(2))
 
 
 def point_to_world(point: Vector) -> Vector:
     """A point of the object's frame in the world."""
-    return _rows("object_to_world", point, columns=4)
+    return _product("object_to_world", point, moved=True)
 
 
 def point_to_object(point: Vector) -> Vector:
     """A point of the world in the object's frame."""
-    return _rows("world_to_object", point, columns=4)
+    return _product("world_to_object", point, moved=True)
 
 
 def vector_to_world(v: Vector) -> Vector:
     """A vector of the object's frame in the world."""
-    return _rows("object_to_world", v, columns=3)
+    return _product("object_to_world", v)
 
 
 def vector_to_object(v: Vector) -> Vector:
     """A vector of the world in the object's frame."""
-    return _rows("world_to_object", v, columns=3)
-
-
-def _columns(source: str, v: Vector) -> Vector:
-    return Vector(
-        *(
-            sum(
-                (read(source, 4 * row + c) * component for row, component in enumerate(v)),
-                start=Value(Step("constant", (), 0.0)),
-            )
-            for c in range(3)
-        )
-    )
+    return _product("world_to_object", v)
 
 
 def normal_to_world(n: Vector) -> Vector:
     """A normal of the object's frame in the world, of another length."""
-    return _columns("world_to_object", n)
+    return _product("world_to_object", n, transposed=True)
 
 
 def normal_to_object(n: Vector) -> Vector:
     """A normal of the world in the object's frame, of another length."""
-    return _columns("object_to_world", n)
+    return _product("object_to_world", n, transposed=True)

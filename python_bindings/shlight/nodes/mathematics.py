@@ -85,6 +85,11 @@ def _floored_modulo(a: Value, b: Value) -> Value:
     return select(equal(b, 0.0), 0.0, a - floor(a / b) * b)
 
 
+def _named(name: str) -> Callable[[Value, Value, Value], Value]:
+    """The core's operation of one number."""
+    return lambda a, b, c: operation(name, a)
+
+
 # Operations of the Math node by Blender's names; b and c are the second and third input.
 MATH: dict[str, Callable[[Value, Value, Value], Value]] = {
     "ADD": lambda a, b, c: a + b,
@@ -116,16 +121,9 @@ MATH: dict[str, Callable[[Value, Value, Value], Value]] = {
     "WRAP": wrap,
     "SNAP": lambda a, b, c: floor(a / b) * b,
     "PINGPONG": lambda a, b, c: ping_pong(a, b),
-    "SINE": lambda a, b, c: operation("sine", a),
-    "COSINE": lambda a, b, c: operation("cosine", a),
-    "TANGENT": lambda a, b, c: operation("tangent", a),
-    "ARCSINE": lambda a, b, c: operation("arcsine", a),
-    "ARCCOSINE": lambda a, b, c: operation("arccosine", a),
-    "ARCTANGENT": lambda a, b, c: operation("arctangent", a),
     "ARCTAN2": lambda a, b, c: operation("arctangent2", a, b),
-    "SINH": lambda a, b, c: operation("sinh", a),
-    "COSH": lambda a, b, c: operation("cosh", a),
-    "TANH": lambda a, b, c: operation("tanh", a),
+    **{name: _named(name.lower()) for name in ("SINE", "COSINE", "TANGENT", "ARCSINE", "ARCCOSINE", "ARCTANGENT")},
+    **{name: _named(name.lower()) for name in ("SINH", "COSH", "TANH")},
     "RADIANS": lambda a, b, c: a * (math.pi / 180.0),
     "DEGREES": lambda a, b, c: a * (180.0 / math.pi),
 }

@@ -107,14 +107,7 @@ class Shader:
 
     def with_aovs(self, aovs: Mapping[str, Varying]) -> Shader:
         """The same, with values that `shlight.render` delivers as passes by these names: numbers, or colours (RGBA)."""
-        own = {
-            name: value
-            if isinstance(value, Value)
-            else number(value)
-            if isinstance(value, int | float)
-            else color(value)
-            for name, value in aovs.items()
-        }
+        own = {name: number(of) if isinstance(of, Value | int | float) else color(of) for name, of in aovs.items()}
         return replace(self, aovs={**self.aovs, **own})
 
     def compiled(self) -> _core.SurfaceShader:
@@ -161,6 +154,10 @@ class Shader:
     @cached_property
     def _listed(self) -> _Listed:
         builder = ProgramBuilder()
+
+        def listed(*values: Value, filtered: bool = self._is_filtered) -> int:
+            return builder.result(on_ray(values, Ray.CAMERA, filtered=filtered))
+
         lobes = []
         normals: dict[int, int] = {}  # lobes with the same normal share the number of its result
         for lobe in self._lobes_for_camera():
@@ -180,12 +177,12 @@ class Shader:
         aovs = []
         for name, value in self.aovs.items():
             parts = [value] if isinstance(value, Value) else list(value)
-            aovs.append((name, builder.result(on_ray(parts, Ray.CAMERA, filtered=self._is_filtered)), len(parts) == 3))
+            aovs.append((name, listed(*parts), len(parts) == 3))
         refractions = []
         for own in self.refractions:
-            weight = builder.result(tuple(color_on_ray(own.weight, Ray.CAMERA, filtered=self._is_filtered)))
-            alpha, ior = (builder.result(on_ray([value], Ray.CAMERA)) for value in (own.alpha, own.ior))
-            bent = None if own.normal is None else builder.result(on_ray(own.normal, Ray.CAMERA))
+            weight = listed(*own.weight)
+            alpha, ior = (listed(value, filtered=True) for value in (own.alpha, own.ior))
+            bent = None if own.normal is None else listed(*own.normal, filtered=True)
             refractions.append((weight, alpha, ior, bent, own.reflects))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))

@@ -8,7 +8,7 @@ for many hits at once. What has constant arguments only is computed at once and 
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NoReturn, TypeAlias
@@ -59,6 +59,30 @@ class Expression:
     __hash__ = object.__hash__
 
 
+def _of_numbers(name: str) -> tuple[Callable[[Value, Number], Value], Callable[[Value, Number], Value]]:
+    """An operator of numbers by its operation: the methods of its left and of its right operand."""
+
+    def left(a: Value, b: Number) -> Value:
+        return arithmetic(name, a, b) if _is_number(b) else NotImplemented
+
+    def right(b: Value, a: Number) -> Value:
+        return arithmetic(name, a, b) if _is_number(a) else NotImplemented
+
+    return left, right
+
+
+def _of_vectors(name: str) -> tuple[Callable[[Vector, Varying], Vector], Callable[[Vector, Varying], Vector]]:
+    """The same of vectors, by component."""
+
+    def left(a: Vector, b: Varying) -> Vector:
+        return type(a)(*(arithmetic(name, *pair) for pair in zip(a, triple(b), strict=True)))
+
+    def right(b: Vector, a: Varying) -> Vector:
+        return type(b)(*(arithmetic(name, *pair) for pair in zip(triple(a), b, strict=True)))
+
+    return left, right
+
+
 class Value(Expression):
     """A number at each hit. Comparisons give 1 where they hold, else 0; `==` is `nodes.equal`."""
 
@@ -73,47 +97,18 @@ class Value(Expression):
         """The number, if it is the same everywhere."""
         return float(self.step.data) if self.step.name == "constant" else None
 
-    def __add__(self, other: Number) -> Value:
-        return add(self, other) if _is_number(other) else NotImplemented
-
-    def __radd__(self, other: float) -> Value:
-        return add(other, self) if _is_number(other) else NotImplemented
-
-    def __sub__(self, other: Number) -> Value:
-        return subtract(self, other) if _is_number(other) else NotImplemented
-
-    def __rsub__(self, other: float) -> Value:
-        return subtract(other, self) if _is_number(other) else NotImplemented
-
-    def __mul__(self, other: Number) -> Value:
-        return multiply(self, other) if _is_number(other) else NotImplemented
-
-    def __rmul__(self, other: float) -> Value:
-        return multiply(other, self) if _is_number(other) else NotImplemented
-
-    def __truediv__(self, other: Number) -> Value:
-        return operation("divide", self, other) if _is_number(other) else NotImplemented
-
-    def __rtruediv__(self, other: float) -> Value:
-        return operation("divide", other, self) if _is_number(other) else NotImplemented
-
-    def __pow__(self, other: Number) -> Value:
-        return operation("power", self, other) if _is_number(other) else NotImplemented
-
-    def __rpow__(self, other: float) -> Value:
-        return operation("power", other, self) if _is_number(other) else NotImplemented
+    __add__, __radd__ = _of_numbers("add")
+    __sub__, __rsub__ = _of_numbers("subtract")
+    __mul__, __rmul__ = _of_numbers("multiply")
+    __truediv__, __rtruediv__ = _of_numbers("divide")
+    __pow__, __rpow__ = _of_numbers("power")
+    __lt__, __gt__ = _of_numbers("less")
 
     def __neg__(self) -> Value:
         return subtract(0.0, self)
 
     def __abs__(self) -> Value:
         return operation("absolute", self)
-
-    def __lt__(self, other: Number) -> Value:
-        return operation("less", self, other) if _is_number(other) else NotImplemented
-
-    def __gt__(self, other: Number) -> Value:
-        return operation("less", other, self) if _is_number(other) else NotImplemented
 
     def __le__(self, other: Number) -> Value:
         return maximum(self < other, equal(self, other)) if _is_number(other) else NotImplemented
@@ -141,37 +136,11 @@ class Vector(Expression):
     def __iter__(self) -> Iterator[Value]:
         return iter((self.x, self.y, self.z))
 
-    def _each(self, name: str, other: Varying, *, swapped: bool = False) -> Vector:
-        pairs = zip(self, triple(other), strict=True)
-        return type(self)(*(arithmetic(name, *((b, a) if swapped else (a, b))) for a, b in pairs))
-
-    def __add__(self, other: Varying) -> Vector:
-        return self._each("add", other)
-
-    __radd__ = __add__
-
-    def __sub__(self, other: Varying) -> Vector:
-        return self._each("subtract", other)
-
-    def __rsub__(self, other: Varying) -> Vector:
-        return self._each("subtract", other, swapped=True)
-
-    def __mul__(self, other: Varying) -> Vector:
-        return self._each("multiply", other)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Varying) -> Vector:
-        return self._each("divide", other)
-
-    def __rtruediv__(self, other: Varying) -> Vector:
-        return self._each("divide", other, swapped=True)
-
-    def __pow__(self, other: Varying) -> Vector:
-        return self._each("power", other)
-
-    def __rpow__(self, other: Varying) -> Vector:
-        return self._each("power", other, swapped=True)
+    __add__, __radd__ = _of_vectors("add")
+    __sub__, __rsub__ = _of_vectors("subtract")
+    __mul__, __rmul__ = _of_vectors("multiply")
+    __truediv__, __rtruediv__ = _of_vectors("divide")
+    __pow__, __rpow__ = _of_vectors("power")
 
     def __neg__(self) -> Vector:
         return 0.0 - self
