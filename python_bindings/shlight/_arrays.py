@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,27 @@ __all__ = ["checked_flag", "checked_integer", "checked_number"]
 Floats = NDArray[Any]
 
 MAX_ORDER = 64
+
+# Arguments of batch functions, and how many of their last axes belong to one light.
+CORE_AXES = {
+    "directions": 1,
+    "coefficients": 1,
+    "centers": 1,
+    "radii": 0,
+    "axes": 1,
+    "half_angles": 0,
+    "vertices": 2,
+    "bsdf": 0,
+    "half_axes_u": 1,
+    "half_axes_v": 1,
+    "light": 1,
+    "material": 1,
+    "cos_theta_o": 0,
+    "phi_o": 0,
+    "eye": 1,
+    "target": 1,
+    "up": 1,
+}
 
 _TYPES = (np.dtype(np.float32), np.dtype(np.float64))
 
@@ -106,15 +127,15 @@ def check_last(name: str, array: Floats, size: int) -> None:
         raise ValueError(f"{name} must have shape (..., {size}), got {array.shape}")
 
 
-def checked_disks(
-    centers: ArrayLike, half_axes_u: ArrayLike, half_axes_v: ArrayLike, dtype: DTypeLike
-) -> tuple[Floats, Floats, Floats]:
-    """The arrays (..., 3) of disks and ellipses: the points centre + a u + b v with a² + b² ≤ 1."""
-    given = {"centers": centers, "half_axes_u": half_axes_u, "half_axes_v": half_axes_v}
-    checked = {name: checked_array(name, value, dtype, core_axes=1) for name, value in given.items()}
-    for name, array in checked.items():
-        check_last(name, array, 3)
-    return checked["centers"], checked["half_axes_u"], checked["half_axes_v"]
+def checked_vectors(dtype: DTypeLike, **given: ArrayLike) -> tuple[dict[str, Floats], dict[str, tuple[int, ...]]]:
+    """Arrays of numbers (...), vectors (..., 3) and polygons (..., k, 3) by CORE_AXES, and their leading axes."""
+    arrays = {name: checked_array(name, value, dtype, core_axes=CORE_AXES[name]) for name, value in given.items()}
+    for name, array in arrays.items():
+        if CORE_AXES[name] > 0:
+            check_last(name, array, 3)
+        if CORE_AXES[name] == 2 and array.shape[-2] < 3:
+            raise ValueError(f"{name}: a polygon needs at least 3, got {array.shape[-2]}")
+    return arrays, {name: array.shape[: array.ndim - CORE_AXES[name]] for name, array in arrays.items()}
 
 
 def check_rows(name: str, good: NDArray[np.bool_] | np.bool_, wrong: str) -> None:
@@ -144,3 +165,8 @@ def rows(array: Floats, shape: tuple[int, ...], *core: int) -> Floats:
     full = (*shape, *core)
     spread = array if array.shape == full else np.ascontiguousarray(np.broadcast_to(array, full))
     return spread.reshape(-1, *core)
+
+
+def all_rows(arrays: Mapping[str, Floats], shape: tuple[int, ...]) -> list[Floats]:
+    """The `rows` of arrays of `checked_vectors`."""
+    return [rows(array, shape, *array.shape[array.ndim - CORE_AXES[name] :]) for name, array in arrays.items()]

@@ -13,28 +13,9 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+from shlight._arrays import CORE_AXES
 
-# Arguments of batch functions, and how many of their last axes belong to one light.
-_CORE_AXES = {
-    "directions": 1,
-    "coefficients": 1,
-    "centers": 1,
-    "radii": 0,
-    "axes": 1,
-    "half_angles": 0,
-    "vertices": 2,
-    "bsdf": 0,
-    "half_axes_u": 1,
-    "half_axes_v": 1,
-    "light": 1,
-    "material": 1,
-    "cos_theta_o": 0,
-    "phi_o": 0,
-    "eye": 1,
-    "target": 1,
-    "up": 1,
-}
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def names_rows(function: Function) -> Function:
@@ -57,9 +38,9 @@ def names_rows(function: Function) -> Function:
 
 def _with_row(text: str, row: int, arguments: Mapping[str, Any]) -> str:
     shapes = {
-        name: np.shape(value)[: len(np.shape(value)) - _CORE_AXES[name]]
+        name: np.shape(value)[: len(np.shape(value)) - CORE_AXES[name]]
         for name, value in arguments.items()
-        if name in _CORE_AXES
+        if name in CORE_AXES
     }
     name = re.match(r"\w*", text)[0]  # type: ignore[index]
     own = shapes.get(name)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shlight._arrays import Floats, broadcast, check_finite, check_last, checked_array, given_type, rows
+from shlight._arrays import Floats, all_rows, broadcast, check_finite, checked_vectors, given_type
 from shlight._calls import names_rows
 
 __all__ = ["look_at"]
@@ -23,13 +23,11 @@ def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) 
     the plane of the line of sight and `up`, as in Blender. float32 where eye and target are, else float64.
     ValueError naming the row where eye and target are one point, and where `up` is 0 or parallel to the line of sight.
     """
-    given = {"eye": eye, "target": target, "up": up}
-    arrays = {name: checked_array(name, value, np.float64, core_axes=1) for name, value in given.items()}
+    arrays, shapes = checked_vectors(np.float64, eye=eye, target=target, up=up)
     for name, array in arrays.items():
-        check_last(name, array, 3)
         check_finite(name, array, core_axes=1)
-    shape = broadcast(**{name: array.shape[:-1] for name, array in arrays.items()})
-    place, aim, above = (rows(array, shape, 3) for array in arrays.values())
+    shape = broadcast(**shapes)
+    place, aim, above = all_rows(arrays, shape)
     back, towards = _unit(place / 2 - aim / 2), _unit(above)  # halves, whose difference cannot overflow
     right = np.cross(towards, back)
     for name, vectors, least, text in (

@@ -25,13 +25,14 @@ from shlight import _core
 from shlight._arrays import (
     MAX_ORDER,
     Floats,
+    all_rows,
     broadcast,
     check_last,
     checked_array,
-    checked_disks,
     checked_flag,
     checked_order,
     checked_threads,
+    checked_vectors,
     given_type,
     rows,
     shaped,
@@ -139,18 +140,13 @@ def sphere_coefficients(
         raise ValueError("method must be 'exact' with gradient")
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("sphere_coefficients", method, **options)
-    dtype = wanted_type(dtype, centers, radii)
-    c = checked_array("centers", centers, dtype, core_axes=1)
-    r = checked_array("radii", radii, dtype)
-    check_last("centers", c, 3)
-    shape = broadcast(centers=c.shape[:-1], radii=r.shape)
-    n, above = checked_order(order), checked_flag("clip", clip)
-    arguments = (rows(c, shape, 3), rows(r, shape), n, above, checked_threads(threads))
+    arguments, shape = _arguments(order, clip, threads, dtype, centers=centers, radii=radii)
     if not wanted:
         return _result(compute, arguments, shape, out)
-    full = (*shape, n * n)
-    into = None if out is None else _checked_out(out, full, arguments[:2]).reshape(-1, n * n)
-    value, center, radius = _core.sphere_coefficients_gradient(*arguments, into)
+    full = (*shape, arguments[2] ** 2)
+    into = None if out is None else _checked_out(out, full, arguments[:2]).reshape(-1, full[-1])
+    arguments = (*arguments, into)
+    value, center, radius = _core.sphere_coefficients_gradient(*arguments)
     derivatives = CoefficientGradient(center.reshape(*full, 3), radius.reshape(full))
     return value.reshape(full) if out is None else out, derivatives
 
@@ -178,14 +174,7 @@ def cap_coefficients(
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("cap_coefficients", method, **options)
-    dtype = wanted_type(dtype, axes, half_angles)
-    a = checked_array("axes", axes, dtype, core_axes=1)
-    h = checked_array("half_angles", half_angles, dtype)
-    check_last("axes", a, 3)
-    shape = broadcast(axes=a.shape[:-1], half_angles=h.shape)
-    n, above = checked_order(order), checked_flag("clip", clip)
-    lights = (rows(a, shape, 3), rows(h, shape))
-    return _result(compute, (*lights, n, above, checked_threads(threads)), shape, out)
+    return _result(compute, *_arguments(order, clip, threads, dtype, axes=axes, half_angles=half_angles), out)
 
 
 @names_rows
@@ -211,13 +200,7 @@ def polygon_coefficients(
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("polygon_coefficients", method, **options)
-    v = checked_array("vertices", vertices, wanted_type(dtype, vertices), core_axes=2)
-    check_last("vertices", v, 3)
-    if v.shape[-2] < 3:
-        raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
-    n, above = checked_order(order), checked_flag("clip", clip)
-    lights = (v.reshape(-1, *v.shape[-2:]),)
-    return _result(compute, (*lights, n, above, checked_threads(threads)), v.shape[:-2], out)
+    return _result(compute, *_arguments(order, clip, threads, dtype, vertices=vertices), out)
 
 
 @names_rows
@@ -241,11 +224,8 @@ def disk_coefficients(
     in float32, at contact, too. ValueError for dependent half axes and for a shading point in the ellipse.
     Stokes' theorem along the outline as elliptic functions: docs/theory.md, 5.
     """
-    c, u, v = checked_disks(centers, half_axes_u, half_axes_v, wanted_type(dtype, centers, half_axes_u, half_axes_v))
-    shape = broadcast(centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1])
-    n, above = checked_order(order), checked_flag("clip", clip)
-    lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
-    return _result(_core.disk_coefficients, (*lights, n, above, checked_threads(threads)), shape, out)
+    axes = {"half_axes_u": half_axes_u, "half_axes_v": half_axes_v}
+    return _result(_core.disk_coefficients, *_arguments(order, clip, threads, dtype, centers=centers, **axes), out)
 
 
 @names_rows
@@ -279,6 +259,16 @@ def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, thread
     """Deprecated name of `contract`."""
     warnings.warn("shlight.shade is deprecated; its name is shlight.contract", DeprecationWarning, stacklevel=2)
     return contract(light_coefficients, bsdf_coefficients, threads=threads)
+
+
+def _arguments(
+    order: int, clip: bool, threads: int, dtype: DTypeLike | None, **lights: ArrayLike
+) -> tuple[tuple[Any, ...], tuple[int, ...]]:
+    """Flat arrays of lights and what the core takes after them, and the leading axes of the result."""
+    arrays, shapes = checked_vectors(wanted_type(dtype, *lights.values()), **lights)
+    shape = broadcast(**shapes)
+    settings = checked_order(order), checked_flag("clip", clip), checked_threads(threads)
+    return (*all_rows(arrays, shape), *settings), shape
 
 
 def _result(

@@ -8,6 +8,7 @@ the true f·cos, and a roughness of 0 shows the light's own image. Nothing here 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
@@ -15,17 +16,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from shlight import _core
 from shlight._arrays import (
+    CORE_AXES,
     Floats,
+    all_rows,
     broadcast,
     check_finite,
-    check_last,
     checked_array,
-    checked_disks,
     checked_flag,
     checked_name,
     checked_order,
     checked_threads,
     checked_tolerance,
+    checked_vectors,
     given_type,
     rows,
 )
@@ -143,38 +145,9 @@ def shade_spheres(
     the tolerance of the radiance returned. Those of mirrors are 0; method and order must then be "auto". With gradient
     "places" those by roughness are left out, which take most of the time.
     """
-    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
-    derived = _checked_gradient(gradient, bsdf, order, method)
-    own = is_own("auto", method)
-    dtype = given_type(centers, radii) if own else np.float64
-    c = checked_array("centers", centers, dtype, core_axes=1)
-    r = checked_array("radii", radii, dtype)
-    cosines = _checked_views(cos_theta_o)
-    check_last("centers", c, 3)
-    phi = _checked_azimuths(phi_o, bsdf, method)
-    views = {"bsdf": _shape(bsdf), "cos_theta_o": cosines.shape, "phi_o": phi.shape}
-    shapes = {"centers": c.shape[:-1], "radii": r.shape, **views}
-    shape = _broadcast_with(2 if derived else 0, shapes)
-    c = _seen_by(phi, c)
-    if own:
-        refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
-        settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-        seen = _material_and_views(bsdf, cosines, phi, shape)
-        spheres, radius = rows(c, shape, 3), rows(r, shape)
-        flat = _core.shade_spheres(spheres, radius, *seen, *settings, wanted)
-    else:
-        lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
-        options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
-        shade = shading_function("shade_spheres", method, _order(order), **options)
-        flat = shade(*lights, checked_threads(threads))
-    if not derived:
-        return _result(*flat, shape, wanted)
-    center, size, rough = _core.shade_spheres_gradient(
-        spheres, radius, *seen[:3], derived == "all", checked_threads(threads)
-    )
-    moved = _seen_by(-phi[..., None], center.reshape(*shape, 3, 3))
-    made = SphereGradient(moved, size.reshape(*shape, 3), rough.reshape(*shape, rough.shape[-1]))
-    return (*_parts(_result(*flat, shape, wanted)), made)
+    options: dict[str, Any] = {"samples": samples, "seed": seed, "sampling": sampling}
+    settings = (phi_o, order, tolerance, threads, method, return_effort, gradient)
+    return _shaded("shade_spheres", {"centers": centers, "radii": radii}, bsdf, cos_theta_o, *settings, **options)
 
 
 @overload
@@ -240,36 +213,9 @@ def shade_polygons(
     or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
     gradient: a PolygonGradient, of the region within the outline; moved vertices need not stay in one plane.
     """
-    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
-    derived = _checked_gradient(gradient, bsdf, order, method)
-    own = is_own("auto", method)
-    dtype = given_type(vertices) if own else np.float64
-    v = checked_array("vertices", vertices, dtype, core_axes=2)
-    check_last("vertices", v, 3)
-    if v.shape[-2] < 3:
-        raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
-    cosines = _checked_views(cos_theta_o)
-    phi = _checked_azimuths(phi_o, bsdf, method)
-    shapes = {"vertices": v.shape[:-2], "bsdf": _shape(bsdf), "cos_theta_o": cosines.shape, "phi_o": phi.shape}
-    shape = _broadcast_with(3 if derived else 0, shapes)
-    v = _seen_by(phi[..., None], v)
-    polygons = rows(v, shape, *v.shape[-2:])
-    if own:
-        refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
-        settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-        seen = _material_and_views(bsdf, cosines, phi, shape)
-        flat = _core.shade_polygons(polygons, *seen, *settings, wanted)
-    else:
-        lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
-        options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
-        shade = shading_function("shade_polygons", method, _order(order), **options)
-        flat = shade(*lights, checked_threads(threads))
-    if not derived:
-        return _result(*flat, shape, wanted)
-    moved, rough = _core.shade_polygons_gradient(polygons, *seen[:3], derived == "all", checked_threads(threads))
-    moved = _seen_by(-phi[..., None, None], moved.reshape(*shape, 3, *v.shape[-2:]))
-    made = PolygonGradient(moved, rough.reshape(*shape, rough.shape[-1]))
-    return (*_parts(_result(*flat, shape, wanted)), made)
+    options: dict[str, Any] = {"samples": samples, "seed": seed, "sampling": sampling}
+    settings = (phi_o, order, tolerance, threads, method, return_effort, gradient)
+    return _shaded("shade_polygons", {"vertices": vertices}, bsdf, cos_theta_o, *settings, **options)
 
 
 @overload
@@ -317,39 +263,67 @@ def shade_disks(
     L_00, or the tolerance if that is less (docs/theory.md, 5.5).
     method: "auto" only; the others know no disks.
     """
-    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
     checked_name("method", method, ("auto",))
-    dtype = given_type(centers, half_axes_u, half_axes_v)
-    c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
-    cosines = _checked_views(cos_theta_o)
+    lights = {"centers": centers, "half_axes_u": half_axes_u, "half_axes_v": half_axes_v}
+    settings = (phi_o, order, tolerance, threads, method, return_effort)
+    return _shaded("shade_disks", lights, bsdf, cos_theta_o, *settings)
+
+
+_GRADIENTS: dict[str, Callable[..., SphereGradient | PolygonGradient]] = {
+    "shade_spheres": SphereGradient,
+    "shade_polygons": PolygonGradient,
+}
+
+
+def _shaded(
+    name: str,
+    lights: dict[str, ArrayLike],
+    bsdf: Bsdf | Bsdfs,
+    cos_theta_o: ArrayLike,
+    phi_o: ArrayLike | None,
+    order: int | Literal["auto"],
+    tolerance: float,
+    threads: int,
+    method: str,
+    return_effort: bool,
+    gradient: bool | Literal["places"] = False,
+    **options: Any,
+) -> Any:
+    """What the function `name` returns of lights, its first arguments. `options` are those of other methods."""
+    bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
+    derived = _checked_gradient(gradient, bsdf, order, method)
+    own = is_own("auto", method)
+    arrays, shapes = checked_vectors(given_type(*lights.values()) if own else np.float64, **lights)
+    cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
     phi = _checked_azimuths(phi_o, bsdf, method)
-    shape = broadcast(
-        centers=c.shape[:-1],
-        half_axes_u=u.shape[:-1],
-        half_axes_v=v.shape[:-1],
-        bsdf=_shape(bsdf),
-        cos_theta_o=cosines.shape,
-        phi_o=phi.shape,
-    )
-    center, half_u, half_v = (rows(_seen_by(phi, own), shape, 3) for own in (c, u, v))
-    seen = _material_and_views(bsdf, cosines, phi, shape)
-    settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-    flat = _core.shade_disks(center, half_u, half_v, *seen, *settings, wanted)
-    return _result(*flat, shape, wanted)
-
-
-def _checked_views(cos_theta_o: ArrayLike) -> Floats:
-    return checked_array("cos_theta_o", cos_theta_o, np.float64)
+    shapes |= {"bsdf": bsdf.shape if isinstance(bsdf, Bsdfs) else (), "cos_theta_o": cosines.shape, "phi_o": phi.shape}
+    axes = [CORE_AXES[argument] for argument in arrays]
+    shape = _broadcast_with(1 + max(axes) if derived else 0, shapes)
+    turned = {argument: _seen_by(phi, array, CORE_AXES[argument]) for argument, array in arrays.items()}
+    flat_lights, cores = all_rows(turned, shape), checked_threads(threads)
+    if own:
+        refuse_options(method, options)
+        seen = _material_and_views(bsdf, cosines, phi, shape)
+        flat = getattr(_core, name)(*flat_lights, *seen, _order(order), checked_tolerance(tolerance), cores, wanted)
+    else:
+        shade = shading_function(name, method, _order(order), tolerance=tolerance, **options)
+        flat = shade(*flat_lights, bsdf, rows(cosines.astype(np.float64), shape), cores)
+    radiance, effort = flat
+    results = [radiance.reshape(*shape, 3), *([effort.reshape(shape)[()]] if wanted else [])]
+    if derived:
+        *moved, rough = getattr(_core, f"{name}_gradient")(*flat_lights, *seen[:3], derived == "all", cores)
+        parts = []
+        for part, array, count in zip(moved, arrays.values(), axes, strict=True):
+            by_rgb = part.reshape(*shape, 3, *array.shape[array.ndim - count :])
+            parts.append(_seen_by(-phi, by_rgb, count + 1 if count else 0))
+        results.append(_GRADIENTS[name](*parts, rough.reshape(*shape, rough.shape[-1])))
+    return tuple(results) if len(results) > 1 else results[0]
 
 
 def _checked_material(bsdf: Any) -> Bsdf | Bsdfs:
     if not isinstance(bsdf, Bsdf | Bsdfs):
         raise TypeError(f"bsdf must be a Bsdf or Bsdfs, got {type(bsdf).__name__}")
     return bsdf
-
-
-def _shape(bsdf: Bsdf | Bsdfs) -> tuple[int, ...]:
-    return bsdf.shape if isinstance(bsdf, Bsdfs) else ()
 
 
 def _checked_azimuths(phi_o: ArrayLike | None, bsdf: Bsdf | Bsdfs, method: str) -> Floats:
@@ -362,15 +336,16 @@ def _checked_azimuths(phi_o: ArrayLike | None, bsdf: Bsdf | Bsdfs, method: str) 
     return phi
 
 
-def _seen_by(phi: Floats, vectors: Floats) -> Floats:
-    """Vectors in the frame whose x is that of the view."""
-    if not phi.any():
-        return vectors
+def _seen_by(phi: Floats, arrays: Floats, axes: int) -> Floats:
+    """Vectors in the frame whose x is that of the view. axes: behind those of views; 0: numbers, which stay."""
+    if axes == 0 or not phi.any():
+        return arrays
+    phi = phi[(..., *[None] * (axes - 1))]
     c, s = np.cos(phi), np.sin(phi)
-    x, y, z = np.moveaxis(vectors, -1, 0)
+    x, y, z = np.moveaxis(arrays, -1, 0)
     with np.errstate(over="ignore", invalid="ignore"):  # the core says which row is too large or not finite
         turned = np.broadcast_arrays(c * x + s * y, c * y - s * x, z)
-    return np.stack(turned, axis=-1).astype(vectors.dtype)
+    return np.stack(turned, axis=-1).astype(arrays.dtype)
 
 
 def _material_and_views(
@@ -416,12 +391,3 @@ def _checked_gradient(
         return "all"
     checked_name("gradient", gradient, ("places",))
     return "places"
-
-
-def _parts(result: Any) -> tuple[Any, ...]:
-    return result if isinstance(result, tuple) else (result,)
-
-
-def _result(radiance: Floats, effort: Any, shape: tuple[int, ...], return_effort: bool) -> Any:
-    shaded = radiance.reshape(*shape, 3)
-    return (shaded, effort.reshape(shape)[()]) if return_effort else shaded
