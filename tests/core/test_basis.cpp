@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -26,30 +25,6 @@ std::vector<T> basis_in(const Vec3d& direction, int order) {
     const Vec3<T> rounded(direction);
     sh_basis<T>(std::span(&rounded, 1), order, values);
     return values;
-}
-
-/// Bands 0 … 2 as polynomials: what fixes the order of the coefficients, their signs and scale.
-TEST(Basis, FirstBandsAreTheKnownPolynomials) {
-    RandomInput random(10);
-    const double pi = std::numbers::pi;
-    for (int i = 0; i < 200; ++i) {
-        const Vec3d d = random.direction();
-        const std::array<double, 9> expected = {
-            std::sqrt(1 / (4 * pi)),
-            std::sqrt(3 / (4 * pi)) * d.y,
-            std::sqrt(3 / (4 * pi)) * d.z,
-            std::sqrt(3 / (4 * pi)) * d.x,
-            std::sqrt(15 / (4 * pi)) * d.x * d.y,
-            std::sqrt(15 / (4 * pi)) * d.y * d.z,
-            std::sqrt(5 / (16 * pi)) * (3 * d.z * d.z - 1),
-            std::sqrt(15 / (4 * pi)) * d.z * d.x,
-            std::sqrt(15 / (16 * pi)) * (d.x * d.x - d.y * d.y),
-        };
-        const std::vector<double> computed = basis_in<double>(d, 3);
-        for (std::size_t k = 0; k < 9; ++k) {
-            EXPECT_NEAR(computed[k], expected[k], 1e-15) << "coefficient " << k;
-        }
-    }
 }
 
 /// Errors are relative to √(n/4π), the root mean square of the highest band's values.
@@ -85,26 +60,6 @@ TEST(Basis, AgreesWithLaplacesIntegral) {
     compare_with_laplace<float>(16, 100, 1e-4);
     compare_with_laplace<float>(33, 30, 5e-4);
     compare_with_laplace<float>(64, 15, 2e-3);
-}
-
-TEST(Basis, EvaluatesExpansions) {
-    RandomInput random(13);
-    const int order = 9;
-    const std::vector<Vec3d> directions = {random.direction(), 5.0 * random.direction(), {0, 0, 1}};
-    std::vector<double> coefficients(directions.size() * 81);
-    for (double& c : coefficients) {
-        c = random.uniform(-1, 1);
-    }
-    std::vector<double> values(directions.size());
-    evaluate<double>(coefficients, directions, order, values);
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-        const std::vector<double> y = basis_in<double>(directions[i], order);
-        double sum = 0;
-        for (std::size_t k = 0; k < 81; ++k) {
-            sum += coefficients[i * 81 + k] * y[k];
-        }
-        EXPECT_NEAR(values[i], sum, 1e-13);
-    }
 }
 
 }  // namespace

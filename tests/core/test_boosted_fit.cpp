@@ -109,11 +109,5 @@ TEST(BoostedFit, AlbedoIsTheIntegral) {
     }
 }
 
-TEST(BoostedFit, EqualShapesShareTheirFit) {
-    EXPECT_EQ(boosted_fit(GgxShape{0.123}), boosted_fit(GgxShape{0.123}));
-    EXPECT_NE(boosted_fit(GgxShape{0.123}), boosted_fit(GgxShape{0.124}));
-    EXPECT_NE(boosted_fit(GgxShape{0.123}), boosted_fit(GgxShape{0.123}, 8));
-}
-
 }  // namespace
 }  // namespace shlight

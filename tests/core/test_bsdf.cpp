@@ -123,20 +123,6 @@ TEST(Bsdf, GgxMixesFresnelByColor) {
     }
 }
 
-TEST(Bsdf, SumsAndScalesAreLinear) {
-    RandomInput random(72);
-    const Bsdf a = Bsdf::lambert({0.1F, 0.2F, 0.3F});
-    const Bsdf b = Bsdf::ggx(0.5F, {0.9F, 0.6F, 0.3F});
-    const Bsdf sum = (a + b).scaled({2, 0.5F, 0});
-    for (int i = 0; i < 50; ++i) {
-        const Vec3d wi = upper(random);
-        const Vec3d wo = upper(random);
-        const Vec3d expected = Vec3d(a.evaluate(wi, wo)) + Vec3d(b.evaluate(wi, wo));
-        expect_near(sum.evaluate(wi, wo), expected * Vec3d(2, 0.5, 0), 1e-6);
-    }
-    expect_near(sum.albedo(0.6), (Vec3d(a.albedo(0.6)) + Vec3d(b.albedo(0.6))) * Vec3d(2, 0.5, 0), 1e-6);
-}
-
 /// Light reflected by the top does not reach the base, which may itself be layered.
 TEST(Bsdf, LayersShareTheLight) {
     RandomInput random(73);

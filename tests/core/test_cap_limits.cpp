@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Caps where formulas break: nothing kept, everything kept, contact, straight above, and absurd sizes.
+// Caps where formulas break: nothing kept, everything kept, contact from below, and absurd sizes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "random_input.h"
-#include "shlight/basis.h"
 #include "shlight/cap.h"
 
 namespace shlight {
@@ -63,23 +62,6 @@ TYPED_TEST(CapLimits, HiddenLightsGiveZeros) {
     EXPECT_EQ(largest(cap<T>({0, 0, -1}, T(1.5), 64)), 0);
 }
 
-TYPED_TEST(CapLimits, ContactIsTheHemisphereAboutTheCentre) {
-    using T = TypeParam;
-    const double tolerance = 40 * static_cast<double>(std::numeric_limits<T>::epsilon());
-    // Straight above: ∫ P_l dz over 0 … 1; odd bands only, and 2π for l = 0.
-    const std::vector<T> above = sphere<T>({0, 0, 1}, 1, 8);
-    EXPECT_NEAR(above[coefficient_index(0, 0)], std::sqrt(kPi), tolerance);
-    EXPECT_NEAR(above[coefficient_index(1, 0)], std::sqrt(3 * kPi) / 2, tolerance);
-    EXPECT_NEAR(above[coefficient_index(2, 0)], 0, tolerance);
-    EXPECT_NEAR(above[coefficient_index(3, 0)], -std::sqrt(7 * kPi) / 8, tolerance);
-    // On the horizon: half of that region is kept.
-    const std::vector<T> beside = sphere<T>({5, 0, 0}, 5, 8);
-    EXPECT_NEAR(beside[coefficient_index(0, 0)], std::sqrt(kPi) / 2, tolerance);
-    EXPECT_NEAR(beside[coefficient_index(1, 1)], std::sqrt(3 / (4 * kPi)) * kPi / 2, tolerance);
-    EXPECT_NEAR(beside[coefficient_index(1, 0)], std::sqrt(3 / (4 * kPi)) * kPi / 2, tolerance);
-    EXPECT_NEAR(beside[coefficient_index(1, -1)], 0, tolerance);
-}
-
 TYPED_TEST(CapLimits, HalfAnglePiIsEverything) {
     using T = TypeParam;
     const double tolerance = 40 * static_cast<double>(std::numeric_limits<T>::epsilon());
@@ -91,24 +73,6 @@ TYPED_TEST(CapLimits, HalfAnglePiIsEverything) {
     const std::vector<T> contact = sphere<T>({0, 0, 1}, 1, 16);
     for (std::size_t i = 0; i < upper.size(); ++i) {
         EXPECT_NEAR(upper[i], contact[i], tolerance);
-    }
-}
-
-TYPED_TEST(CapLimits, StraightAboveHasNoPreferredAzimuth) {
-    using T = TypeParam;
-    for (const T half_angle : {T(1e-6), T(0.1), T(1.5), T(2), T(3)}) {
-        for (const bool clip : {true, false}) {
-            for (const T z : {T(1), T(-1)}) {
-                const std::vector<T> result = cap<T>({0, 0, z}, half_angle, 64, clip);
-                ASSERT_TRUE(all_finite(result));
-                for (int l = 1; l < 64; ++l) {
-                    for (int m = 1; m <= l; ++m) {
-                        EXPECT_EQ(result[coefficient_index(l, m)], 0);
-                        EXPECT_EQ(result[coefficient_index(l, -m)], 0);
-                    }
-                }
-            }
-        }
     }
 }
 
@@ -142,14 +106,6 @@ TYPED_TEST(CapLimits, EverythingIsFinite) {
     }
 }
 
-/// Only directions count: powers of two change no bit.
-TYPED_TEST(CapLimits, ScaleDoesNotMatter) {
-    using T = TypeParam;
-    const std::vector<T> near = sphere<T>({T(0.3), T(0.4), T(-0.02)}, T(0.1), 16);
-    EXPECT_EQ(near, sphere<T>({T(0.3) * 1024, T(0.4) * 1024, T(-0.02) * 1024}, T(0.1) * 1024, 16));
-    EXPECT_EQ(near, sphere<T>({T(0.3) / 4096, T(0.4) / 4096, T(-0.02) / 4096}, T(0.1) / 4096, 16));
-}
-
 TYPED_TEST(CapLimits, ManyLightsGiveTheSameAsEachAlone) {
     using T = TypeParam;
     RandomInput random(31);
@@ -167,22 +123,6 @@ TYPED_TEST(CapLimits, ManyLightsGiveTheSameAsEachAlone) {
             const std::vector<T> alone = sphere<T>(centers[i], radii[i], order);
             EXPECT_TRUE(
                 std::equal(alone.begin(), alone.end(), together.begin() + static_cast<std::ptrdiff_t>(i * count)));
-        }
-    }
-}
-
-/// A small cap is its solid angle times the basis along its axis.
-TYPED_TEST(CapLimits, SmallCapsTendToTheBasis) {
-    using T = TypeParam;
-    RandomInput random(32);
-    for (int i = 0; i < 50; ++i) {
-        const Vec3<T> axis(random.at_tilt(random.uniform(0, 1.5)));
-        const T half_angle = T(1e-4);
-        const std::vector<T> result = cap<T>(axis, half_angle, 8);
-        std::vector<T> basis(64);
-        sh_basis<T>(std::span(&axis, 1), 8, basis);
-        for (std::size_t k = 0; k < 64; ++k) {
-            EXPECT_NEAR(result[k] / (kPi * 1e-8), basis[k], 1e-5);
         }
     }
 }

@@ -7,9 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -106,24 +104,6 @@ EllipseInput rounded_off_contact(RandomInput& random) {
 }
 TEST(Disk, OneOfItsSidesIsSeenHoweverNear) {
     compare_class({"rounded off contact", rounded_off_contact}, 24, {1, 2, 8}, 1800);
-}
-
-TEST(Disk, NothingIsSeenEdgeOnOrBelowTheHorizon) {
-    for (const EllipseInput& disk :
-         {EllipseInput{{3, 0, 1}, {1, 0, 0}, {0, 0, 1}}, EllipseInput{{0, 0, -1}, {1, 0, 0.5}, {0, 1, 0}},
-          EllipseInput{{3, 0, 0}, {1, 0, 0}, {0, 1, 0}}}) {
-        EXPECT_EQ(coefficients<double>(disk, 5, true), std::vector<double>(25, 0.0));
-        EXPECT_EQ(coefficients<float>(disk, 5, true), std::vector<float>(25, 0.0F));
-    }
-}
-
-/// Half of the sphere is seen in the end, from either side.
-TEST(Disk, ContactIsHalfTheSphere) {
-    for (const double distance : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15, -1e-12}) {
-        const EllipseInput disk = {{0.3, -0.2, distance}, {1, 0.5, 0}, {-0.2, 0.8, 0}};
-        const double half = std::sqrt(std::numbers::pi);
-        EXPECT_LE(std::abs(coefficients<double>(disk, 1, false)[0] - half), 5 * std::abs(distance) + 1e-15);
-    }
 }
 
 }  // namespace

@@ -64,26 +64,6 @@ std::vector<double> basis_at(const Vec3d& direction, int order) {
 
 // --- pictures
 
-TEST(EnvironmentMap, RowsAndColumnsLieAsSaid) {
-    // Columns: -x -y corner, and so on: four texels of 90° each.
-    LatLong picture{{}, 4, 2};
-    for (int i = 0; i < 8; ++i) {
-        picture.pixels.emplace_back(static_cast<float>(i));
-    }
-    const Environment environment(picture);
-    const double up = std::sqrt(0.5);
-    EXPECT_NEAR(environment.radiance(glm::normalize(Vec3d(-1, 1, std::sqrt(2.0)))).x, 0, 1e-6);
-    EXPECT_NEAR(environment.radiance(Vec3d(0.5, 0.5, up)).x, 1, 1e-6);
-    EXPECT_NEAR(environment.radiance(Vec3d(0.5, -0.5, up)).x, 2, 1e-6);
-    EXPECT_NEAR(environment.radiance(Vec3d(-0.5, -0.5, up)).x, 3, 1e-6);
-    EXPECT_NEAR(environment.radiance(Vec3d(-0.5, -0.5, -up)).x, 7, 1e-6);
-    EXPECT_NEAR(environment.radiance(Vec3d(up, 0, up)).x, 1.5, 1e-6);
-    EXPECT_NEAR(environment.radiance(Vec3d(-up, 0, up)).x, 1.5, 1e-6) << "across the seam";
-    EXPECT_NEAR(environment.radiance(Vec3d(std::sqrt(0.5), std::sqrt(0.5), 0)).x, 3, 1e-6);
-    picture.to_world = rotation_about({0, 0, 1}, kPi / 2);
-    EXPECT_NEAR(Environment(picture).radiance(Vec3d(-0.5, 0.5, up)).x, 1, 1e-6) << "+x +y has come to -x +y";
-}
-
 // --- harmonics
 
 TEST(EnvironmentMap, CoefficientsAreIntegralsOfTheBilinearPicture) {

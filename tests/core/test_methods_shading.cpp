@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
-#include <vector>
 
 #include "error_record.h"
 #include "lobe_truth.h"
@@ -100,17 +99,6 @@ TEST(NumericalMethods, ShadingQuadratureOfPolygonsMatchesBruteForce) {
     });
     record.publish("shading quadrature of polygons");
     EXPECT_LE(record.largest(), 1e-8) << record.worst();
-}
-
-TEST(NumericalMethods, ShadingQuadratureKnowsClosedForms) {
-    const auto lambert = find_shading_method("quadrature").make(LambertShape{}, 0.4, {});
-    for (const double half : {1e-4, 0.3, 1.2}) {
-        const Vec3d axis(std::sin(0.3), 0, std::cos(0.3));
-        const double expected = std::pow(std::sin(half), 2) * axis.z;  // where nothing is below the horizon
-        EXPECT_NEAR(lambert->radiance(cap_about_axis(axis, half), 0).value, expected, 1e-12 * expected) << half;
-    }
-    const auto hidden = lambert->radiance(cap_about_axis({0, 0, -1}, 0.5), 0);
-    EXPECT_EQ(hidden.value, 0);
 }
 
 TEST(NumericalMethods, ShadingMonteCarloIsUnbiased) {

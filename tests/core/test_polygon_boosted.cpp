@@ -204,15 +204,6 @@ TEST(PolygonBoostedLimits, ShadingIsTheDotProduct) {
     }
 }
 
-TEST(PolygonBoostedLimits, NoAreaGivesZeros) {
-    const std::vector<float> zeros(36, 0.0F);
-    const BoostInput boost{0.5, 0.1};
-    EXPECT_EQ(boosted_terms({{1, 0, 1}, {1, 0, 1}, {1, 0, 1}}, boost, 8), zeros);
-    EXPECT_EQ(boosted_terms({{1, 0, 1}, {2, 0, 2}, {3, 0, 1}}, boost, 8), zeros);
-    EXPECT_EQ(boosted_terms({{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}, boost, 8), zeros);
-    EXPECT_EQ(boosted_terms({{-1, -1, -1}, {1, -1, -1}, {0, 2, -1}}, boost, 8), zeros);
-}
-
 TEST(PolygonBoostedLimits, EverythingIsFinite) {
     RandomInput random(764);
     for (int i = 0; i < 2000; ++i) {

@@ -76,23 +76,6 @@ double mean_difference(const Image& a, const Image& b) {
     return std::abs(difference) / sum;
 }
 
-TEST(RenderEmitters, FineIcospheresShineAsSpheres) {
-    // Two of them. 5120 faces show 0.14 % less than the sphere, a level of detail about as much more or less.
-    const RenderSettings settings = testing::analytic_settings();
-    for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.5F, Rgb(0.9F))}) {
-        const auto meshes = [](Scene& scene) {
-            scene.add_mesh(emissive(testing::icosphere(4), kCenter, 1));
-            scene.add_mesh(emissive(testing::icosphere(4), kOther, 1));
-        };
-        const auto spheres = [](Scene& scene) {
-            scene.add_sphere_light(kCenter, 1, Rgb(1));
-            scene.add_sphere_light(kOther, 1, Rgb(1));
-        };
-        expect_close(floor_under(meshes, settings, floor, nullptr), floor_under(spheres, settings, floor, nullptr),
-                     0.02);
-    }
-}
-
 TEST(RenderEmitters, NothingButWhatIsInTheWayShadows) {
     RenderSettings settings = testing::analytic_settings();
     settings.shadow_rays = 64;

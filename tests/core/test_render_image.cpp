@@ -41,28 +41,6 @@ Image floor_under(const std::function<void(Scene&)>& add, const RenderSettings& 
     return render_image(scene, camera_above(kHalf), kSize, kSize, settings);
 }
 
-TEST(RenderImage, SphereLightOverALambertFloor) {
-    const Vec3d center(0.3, -0.4, 1.5);
-    const double radius = 0.6;
-    for (const bool facing_disk : {false, true}) {
-        const Image image =
-            floor_under([&](Scene& scene) { scene.add_sphere_light(center, radius, Rgb(2, 1, 0), facing_disk); });
-        const auto truth = [&](const Vec3d& point) {
-            const Vec3d way = center - point;
-            const double d2 = glm::dot(way, way);
-            const double sin2 = radius * radius / (facing_disk ? d2 + radius * radius : d2);
-            return sin2 * way.z / std::sqrt(d2);  // 2 · albedo ÷ π · π sin²σ cosθ
-        };
-        EXPECT_LE(error_of(image, 0.2, truth), 1);
-        for (int i = 0; i < kSize * kSize; ++i) {
-            const Rgb color = image.color(i % kSize, i / kSize);
-            expect_close(color.y, color.x / 2, 0.1);
-            EXPECT_EQ(color.z, 0);
-            EXPECT_EQ(image.alpha(i % kSize, i / kSize), 1);
-        }
-    }
-}
-
 TEST(RenderImage, SphereCutByTheHorizon) {
     // A centre in the floor's plane: half the cap is kept. Seen from above it fills the segment of the unit disk
     // between the horizon's arc and the chord at cosσ, and that area, σ - sinσ cosσ, is ∫ cosθ dω.
@@ -92,17 +70,6 @@ TEST(RenderImage, PolygonLightCutByTheHorizon) {
     EXPECT_LE(error_of(image, 0.3, [&](const Vec3d& point) { return 0.5 * form_factor(point, above); }), 1);
 }
 
-TEST(RenderImage, LampsAreNotSeen) {
-    Scene scene;
-    scene.add_mesh(floor_mesh(0.5F));
-    scene.add_sphere_light({0, 0, 5}, 1, Rgb(7));
-    scene.add_polygon_light({{-2, -2, 6}, {2, -2, 6}, {2, 2, 6}, {-2, 2, 6}}, Rgb(7));
-    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
-    EXPECT_EQ(image.alpha(0, 0), 0);
-    EXPECT_EQ(image.color(0, 0), Rgb(0));
-    EXPECT_LE(image.red(kSize / 2, kSize / 2), 1);
-}
-
 Mesh emitter(const std::vector<Vec3d>& quad, const Rgb& radiance) {
     Mesh mesh;
     mesh.vertices.assign(quad.begin(), quad.end());
@@ -124,19 +91,6 @@ TEST(RenderImage, EmissiveQuadEqualsPolygonLightAndIsSeen) {
         EXPECT_LE(error_of(image, 1, truth), 1);
         EXPECT_EQ(image.red(18, 12), 2);
     }
-}
-
-TEST(RenderImage, EmissiveMaterialsOfOneMesh) {
-    Mesh mesh = floor_mesh(2);
-    mesh.material_indices = {0, 1};
-    mesh.bsdfs = {Bsdf::lambert(Rgb(0.5F)), Bsdf()};
-    mesh.emission = {Rgb(0), Rgb(4, 5, 6)};
-    Scene scene;
-    scene.add_mesh(mesh);
-    EXPECT_EQ(scene.compile()->lights().size(), 1U);
-    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
-    EXPECT_EQ(image.color(2, kSize / 4), Rgb(4, 5, 6));            // upper left: triangle 1
-    EXPECT_EQ(image.color(kSize - 3, kSize - kSize / 4), Rgb(0));  // coplanar with its light: unlit
 }
 
 TEST(RenderImage, MirroredAndStretchedInstancesKeepTheirNormals) {
@@ -328,12 +282,6 @@ TEST(RenderImage, AGlossyFloorKeepsTheToleranceOfTheLightAtEachPoint) {
                 << "pixel " << i << ", channel " << channel;
         }
     }
-}
-
-TEST(RenderImage, EmptySceneIsTransparentBlack) {
-    const Image image = render_image(Scene(), camera_above(1), 3, 2, RenderSettings());
-    EXPECT_EQ(image.values, std::vector<float>(24, 0.0F));
-    EXPECT_EQ(image.report.hits, 0U);
 }
 
 }  // namespace

@@ -43,18 +43,6 @@ RenderSettings settings_for(int threads) {
     return settings;
 }
 
-TEST(RenderParallel, ThreadsDoNotChangeABit) {
-    const Scene scene = busy_scene();
-    const Image one = render_image(scene, camera_above(2), 70, 50, settings_for(1));
-    for (const int threads : {2, 5, 0}) {
-        const Image many = render_image(scene, camera_above(2), 70, 50, settings_for(threads));
-        EXPECT_EQ(many.values, one.values) << threads;
-        EXPECT_EQ(many.report.order_counts, one.report.order_counts);
-        EXPECT_EQ(many.report.shadow_rays, one.report.shadow_rays);
-    }
-    EXPECT_EQ(render_image(scene, camera_above(2), 70, 50, settings_for(1)).values, one.values) << "a second run";
-}
-
 TEST(RenderParallel, TilesDoNotChangeABit) {
     // The left quarter alone is cut into other tiles than as part of the whole. Powers of two keep the rays the same, a
     // given order keeps the mean of a picture from counting, and a fixed number of rays the neighbours outside.

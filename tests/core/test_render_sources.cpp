@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "quadrature.h"
@@ -36,26 +35,6 @@ double error_of(const Image& image, const std::function<double(const Vec3d&)>& t
     const auto expected = [&](int column, int row) { return truth(floor_point(column, row, kSize, kHalf)); };
     const PictureError error = picture_error(image, expected);
     return error.largest / error.brightest;
-}
-
-TEST(RenderSources, PointLightFallsWithTheSquareOfTheDistance) {
-    const Vec3d position(0.4, -0.3, 1.2);
-    const Image image = floor_under([&](Scene& scene) { scene.add_point_light(position, Rgb(7)); });
-    EXPECT_LE(error_of(image,
-                       [&](const Vec3d& p) {
-                           const double d = glm::length(position - p);
-                           return kAlbedo / pi * 7 * position.z / (d * d * d);
-                       }),
-              2e-6);
-}
-
-TEST(RenderSources, SunGivesItsIrradianceTimesTheCosine) {
-    const Vec3d travels(0.3, -0.5, -1);
-    const double cosine = 1 / glm::length(travels);
-    for (const double angle : {0.0, 1e-9, 1e-5, 0.01, 0.1, 0.6, 1.0}) {
-        const Image image = floor_under([&](Scene& scene) { scene.add_sun_light(travels, angle, Rgb(3)); });
-        EXPECT_LE(error_of(image, [&](const Vec3d& /*p*/) { return kAlbedo / pi * 3 * cosine; }), 2e-5) << angle;
-    }
 }
 
 TEST(RenderSources, ASettingSunIsCutByTheHorizon) {

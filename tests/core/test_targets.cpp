@@ -13,8 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "error_message.h"
-
 namespace shlight {
 namespace {
 
@@ -53,12 +51,6 @@ TEST(Targets, AForcedOneIsInUse) {
         EXPECT_EQ(kernel_target(), target);
     }
     EXPECT_EQ(kernel_target(), before);
-}
-
-TEST(Targets, AnUnknownOneIsNamed) {
-    const std::string message = testing::error_message([] { force_kernel_target("MMX"); });
-    EXPECT_EQ(message.find("target: this build has " + kernel_targets().front()), 0U) << message;
-    EXPECT_NE(message.find(", not MMX"), std::string::npos) << message;
 }
 
 }  // namespace

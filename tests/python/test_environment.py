@@ -42,7 +42,7 @@ def test_picture_is_seen_where_it_lies() -> None:
     picture = random_picture()
     scene = shlight.Scene()
     scene.set_environment(picture)
-    for row, column in [(3, 0), (8, 5), (12, 31)]:
+    for row, column in [(3, 0), (8, 5), (12, 31), (8, 5.5), (3, 31.5)]:  # in the middle of a texel or between two
         tilt, azimuth = (row + 0.5) / 16 * np.pi, np.pi * (1 - 2 * (column + 0.5) / 32)
         z = -np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
         x = np.cross([0, 0, 1], z)
@@ -50,9 +50,8 @@ def test_picture_is_seen_where_it_lies() -> None:
         to_world = np.eye(4)
         to_world[:3, :3] = np.stack([x, np.cross(z, x), z], 1)
         scene.set_camera(to_world, 1e-4)
-        np.testing.assert_allclose(
-            shlight.render(scene, 1, 1, max_bounces=0)[0, 0], [*picture[row, column], 1], atol=5e-4
-        )
+        expected = (picture[row, int(column)] + picture[row, int(column + 0.5) % 32]) / 2
+        np.testing.assert_allclose(shlight.render(scene, 1, 1, max_bounces=0)[0, 0], [*expected, 1], atol=5e-4)
 
 
 def test_a_turned_picture_is_its_columns_rolled() -> None:

@@ -171,7 +171,13 @@ def test_hidden_lights_give_zeros() -> None:
     assert not shlight.sphere_coefficients([0, 0, -2], 1, 8).any()
     assert not shlight.cap_coefficients([0.1, 0, -1], 0.5, 8).any()
     assert not shlight.polygon_coefficients([[1, 0, -1], [0, 1, -1], [-1, -1, -1]], 8).any()
-    assert not shlight.disk_coefficients([3, 0, 1], [1, 0, 0], [0, 0, 1], 5).any()  # edge-on
+    for dtype in (np.float32, np.float64):
+        for center, u, v in (
+            ([3, 0, 1], [1, 0, 0], [0, 0, 1]),  # edge-on
+            ([0, 0, -1], [1, 0, 0.5], [0, 1, 0]),
+            ([3, 0, 0], [1, 0, 0], [0, 1, 0]),  # in the horizon's plane
+        ):
+            assert not shlight.disk_coefficients(center, u, v, 5, dtype=dtype).any()
 
 
 def test_triangles_with_a_vertex_far_away() -> None:

@@ -92,14 +92,17 @@ def test_any_real_type_and_layout_will_do(dtype: type) -> None:
     np.testing.assert_array_equal(shlight.shade_polygons(np.array(TRIANGLE, dtype), BSDF, view), expected)
 
 
-def test_hidden_lights_give_zeros() -> None:
+@pytest.mark.parametrize("roughness", [0.3, 0.05])
+def test_hidden_lights_give_zeros(roughness: float) -> None:
+    bsdf = Bsdf.ggx(roughness, 0.9)
     for radiance, effort in (
-        shlight.shade_spheres([0.3, 0, -2], 1, BSDF, 0.5, return_effort=True),
-        shlight.shade_polygons(-np.array(TRIANGLE), BSDF, 0.5, return_effort=True),
-        shlight.shade_polygons([[1, 0, 1], [2, 0, 2], [3, 0, 3]], BSDF, 0.5, return_effort=True),  # no area
-        shlight.shade_polygons([[1, 0, 1], [2, 0, 2], [2, 0, 1]], BSDF, 0.5, return_effort=True),  # edge-on
-        shlight.shade_disks((0, 0, -2), (1, 0, 0), (0, 1, 0), BSDF, 0.7, return_effort=True),
-        shlight.shade_disks((3, 0, 1), (1, 0, 0), (0, 0, 0.5), BSDF, 0.7, return_effort=True),  # edge-on
+        shlight.shade_spheres([0.3, 0, -2], 1, bsdf, 0.5, return_effort=True),
+        shlight.shade_polygons(-np.array(TRIANGLE), bsdf, 0.5, return_effort=True),
+        shlight.shade_polygons([[1, 0, 1]] * 3, bsdf, 0.5, return_effort=True),  # a point
+        shlight.shade_polygons([[1, 0, 1], [2, 0, 2], [3, 0, 3]], bsdf, 0.5, return_effort=True),  # no area
+        shlight.shade_polygons([[1, 0, 1], [2, 0, 2], [2, 0, 1]], bsdf, 0.5, return_effort=True),  # edge-on
+        shlight.shade_disks((0, 0, -2), (1, 0, 0), (0, 1, 0), bsdf, 0.7, return_effort=True),
+        shlight.shade_disks((3, 0, 1), (1, 0, 0), (0, 0, 0.5), bsdf, 0.7, return_effort=True),  # edge-on
         shlight.shade_spheres([0, 0, 2], 1, Bsdf.lambert(0), 0.5, return_effort=True),
     ):
         assert not radiance.any()
