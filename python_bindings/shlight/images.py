@@ -46,15 +46,11 @@ _PASS_CHANNELS = {
 }
 _PASS_NAMES = {
     "combined": "Combined",
-    "diffuse_direct": "DiffDir",
-    "diffuse_indirect": "DiffInd",
-    "diffuse_color": "DiffCol",
-    "glossy_direct": "GlossDir",
-    "glossy_indirect": "GlossInd",
-    "glossy_color": "GlossCol",
-    "transmission_direct": "TransDir",
-    "transmission_indirect": "TransInd",
-    "transmission_color": "TransCol",
+    **{
+        f"{light}_{part}": own + own_part
+        for light, own in (("diffuse", "Diff"), ("glossy", "Gloss"), ("transmission", "Trans"))
+        for part, own_part in (("direct", "Dir"), ("indirect", "Ind"), ("color", "Col"))
+    },
     "emission": "Emit",
     "environment": "Env",
     "denoising_albedo": "Denoising Albedo",
@@ -122,13 +118,14 @@ def read_layers(path: str | os.PathLike[str], *, view_layer: str | None = None) 
     if view_layer is not None and not isinstance(view_layer, str):
         raise ValueError(f"view_layer must be a string or None, got {type(view_layer).__name__}")
     found: dict[str, dict[str, dict[tuple[int, str], npt.NDArray[np.float32]]]] = {}
-    for full_name, values in _exr_channels(path):
-        before, _, channel = full_name.rpartition(".")
-        owner, dot, layer = before.partition(".")
-        if not dot:
-            owner, layer = "", before or "Combined"
-        name, number = _pass_of(layer)
-        found.setdefault(owner, {}).setdefault(name, {})[number, channel] = values
+    for spec, pixels in image_parts(path, only="openexr"):
+        for full_name, values in zip(spec.channelnames, np.moveaxis(pixels, 2, 0), strict=True):
+            before, _, channel = full_name.rpartition(".")
+            owner, dot, layer = before.partition(".")
+            if not dot:
+                owner, layer = "", before or "Combined"
+            name, number = _pass_of(layer)
+            found.setdefault(owner, {}).setdefault(name, {})[number, channel] = values
     if view_layer is None and len(found) == 1:
         view_layer = next(iter(found))
     if view_layer not in found:
@@ -139,18 +136,25 @@ def read_layers(path: str | os.PathLike[str], *, view_layer: str | None = None) 
     }
 
 
-def _exr_channels(path: str | os.PathLike[str]) -> Iterator[tuple[str, npt.NDArray[np.float32]]]:
-    """The channels (height, width) of all parts of an OpenEXR file, with their names."""
-    source = _opened(path)
+def image_parts(
+    path: str | os.PathLike[str], *, only: str | None = None, associate: bool = True
+) -> Iterator[tuple[Any, npt.NDArray[np.float32]]]:
+    """All parts of a picture's file: the oiio.ImageSpec of each, and its channels (height, width, n).
+
+    only: the one format that is read. associate: as of `read_texture`.
+    """
+    source = _opened(path, associate=associate)
     try:
+        suits = only in (None, source.format_name())
         part = 0
         while source.seek_subimage(part, 0):
-            pixels = source.read_image(part, 0, 0, 10**4, "float") if source.format_name() == "openexr" else None
+            pixels = source.read_image(part, 0, 0, 10**4, "float") if suits else None
             if pixels is None:
                 raise OSError(f"{path}: {source.geterror().strip() or 'not an OpenEXR image'}")
-            yield from zip(source.spec().channelnames, np.moveaxis(np.atleast_3d(pixels), 2, 0), strict=True)
+            yield source.spec(), np.atleast_3d(pixels)
             part += 1
     finally:
+        source.geterror()  # of the part that is not there
         source.close()
 
 
@@ -361,9 +365,22 @@ def _write(
     for name, value in attributes.items():
         spec.attribute(name, value)
     with complete_or_absent(path) as temporary:
-        target = oiio.ImageOutput.create(file_format)
-        if target is None:
-            raise OSError(f"{path}: {oiio.geterror().strip()}")
-        done = target.open(_as_it_is(temporary), spec) and target.write_image(pixels)
-        if not (target.close() and done):
-            raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")
+        write_pixels(path, spec, pixels, file_format, temporary)
+
+
+def write_pixels(path: Path, spec: Any, pixels: npt.NDArray[Any], file_format: str, place: Path) -> None:
+    """Writes a file of an oiio.ImageSpec at `place`. OSError, which names `path`, where it cannot be written."""
+    target = opened_output(path, spec, file_format, place)
+    done = target.write_image(pixels)
+    if not (target.close() and done):
+        raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")
+
+
+def opened_output(path: Path, spec: Any, file_format: str, place: Path) -> Any:
+    """An oiio.ImageOutput that writes at `place`. OSError, which names `path`, where it cannot be opened."""
+    import OpenImageIO as oiio
+
+    target = oiio.ImageOutput.create(file_format)
+    if target is None or not target.open(_as_it_is(place), spec):
+        raise OSError(f"{path}: {(target or oiio).geterror().strip()}")
+    return target

@@ -289,7 +289,7 @@ def _shaded(
     gradient: bool | Literal["places"] = False,
     **options: Any,
 ) -> Any:
-    """What the function `name` returns of lights, its first arguments. `options` are those of other methods."""
+    """The result of the function `name`, whose first arguments are the lights. `options` are those of other methods."""
     bsdf, wanted = _checked_material(bsdf), checked_flag("return_effort", return_effort)
     derived = _checked_gradient(gradient, bsdf, order, method)
     own = is_own("auto", method)

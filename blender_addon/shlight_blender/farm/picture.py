@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 
 from shlight.farm import Rendered
+from shlight.images import image_parts
 from shlight.quiet import quiet
 
 from .. import record
@@ -220,24 +221,8 @@ def _set_border(render: Any, whole: Frame, box: Box) -> None:
 
 def _read(path: Path) -> tuple[tuple[str, ...], Any, dict[str, str]]:
     """Channels of all parts of a file."""
-    import OpenImageIO as oiio
-
-    as_stored = oiio.ImageSpec()
-    as_stored.attribute("oiio:UnassociatedAlpha", 1)
-    source = oiio.ImageInput.open(str(path), as_stored)
-    if source is None:
-        raise OSError(f"{path}: {oiio.geterror().strip()}")
-    names: list[str] = []
-    attributes: dict[str, str] = {}
-    parts: list[Any] = []
-    part = 0
-    while source.seek_subimage(part, 0):
-        spec = source.spec()
-        names += spec.channelnames
-        pixels: Any = source.read_image(part, 0, 0, spec.nchannels, "float")
-        parts.append(np.atleast_3d(pixels))
-        attributes |= {a.name: str(a.value) for a in spec.extra_attribs if a.name.startswith(KEPT_ATTRIBUTES)}
-        part += 1
-    source.geterror()
-    source.close()
-    return tuple(names), np.concatenate(parts, axis=2), attributes
+    parts = list(image_parts(path, associate=False))
+    kept_of = [each for spec, _ in parts for each in spec.extra_attribs if each.name.startswith(KEPT_ATTRIBUTES)]
+    names = tuple(name for spec, _ in parts for name in spec.channelnames)
+    pixels = np.concatenate([channels for _, channels in parts], axis=2)
+    return names, pixels, {each.name: str(each.value) for each in kept_of}

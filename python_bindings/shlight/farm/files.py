@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from shlight.farm.frames import PNG
 from shlight.farm.pictures import Box, Picture, Rendered
-from shlight.images import complete_or_absent
+from shlight.images import complete_or_absent, opened_output, write_pixels
 
 KEY = "shlight:key"
 TILE = 64  # side of the file's tiles
@@ -25,10 +24,8 @@ def encode(picture: Picture, rendered: Rendered) -> bytes:
     """The file of a picture: 32-bit float OpenEXR, compressed without loss, or PNG. OSError if it cannot be made."""
     with tempfile.TemporaryDirectory(prefix="shlight-") as folder:
         path = Path(folder) / picture.path.with_stem("picture").name
-        target = _opened(path, _spec(picture, rendered))
-        done = target.write_image(np.ascontiguousarray(rendered.pixels))
-        if not (target.close() and done):
-            raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")
+        spec, pixels = _spec(picture, rendered), np.ascontiguousarray(rendered.pixels)
+        write_pixels(picture.path, spec, pixels, _format(picture), path)
         return path.read_bytes()
 
 
@@ -46,7 +43,6 @@ class TiledFile:
         self._missing = set(picture.boxes)
         self._stack = ExitStack()
         self._target: Any = None
-        self._temporary = Path()
 
     def add(self, box: Box, tile: Rendered) -> bool:
         """Writes one; whether the file is complete with it. OSError leaves no file."""
@@ -54,8 +50,9 @@ class TiledFile:
             spec = _spec(self._picture, tile)
             spec.tile_width = spec.tile_height = TILE
             spec.attribute("openexr:lineOrder", "randomY")  # else what comes early would be kept in memory
-            self._temporary = self._stack.enter_context(complete_or_absent(self._picture.path))
-            self._target = _opened(self._temporary, spec)
+            path = self._picture.path
+            temporary = self._stack.enter_context(complete_or_absent(path))
+            self._target = opened_output(path, spec, _format(self._picture), temporary)
         left, top, right, bottom = box
         pixels = np.ascontiguousarray(tile.pixels, dtype=np.float32)
         if not self._target.write_tiles(left, right, top, bottom, 0, 1, pixels):
@@ -116,10 +113,5 @@ def _spec(picture: Picture, rendered: Rendered) -> Any:
     return spec
 
 
-def _opened(path: Path, spec: Any) -> Any:
-    import OpenImageIO as oiio
-
-    target = oiio.ImageOutput.create(path.suffix.removeprefix(".") or "exr")
-    if target is None or not target.open(os.fspath(path), spec):
-        raise OSError(f"{path}: {(target or oiio).geterror().strip()}")
-    return target
+def _format(picture: Picture) -> str:
+    return picture.path.suffix.removeprefix(".") or "exr"

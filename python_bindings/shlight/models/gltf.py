@@ -11,7 +11,7 @@ import io
 import json
 import math
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ import numpy as np
 
 from shlight._core import Scene
 from shlight.models.gltf_materials import EXTENSIONS, Materials
-from shlight.models.parts import Floats, Model, Part, import_trimesh
+from shlight.models.parts import Floats, Model, Part, import_trimesh, read_scene
 from shlight.photometry import LUMENS_PER_WATT
 
 JSON_CHUNK = 0x4E4F534A
@@ -93,13 +93,8 @@ def _primitives(path: Path, header: dict[str, Any], rest: bytes | None) -> dict[
         data += b" " * (-len(data) % 4)
         sizes = (20 + len(data) + len(rest), len(data), JSON_CHUNK)
         data, kind = struct.pack("<4sIIII", b"glTF", 2, *sizes) + data + rest, "glb"
-    try:
-        resolver = trimesh.resolvers.FilePathResolver(str(path))
-        read = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=resolver, process=False)
-    except OSError:
-        raise
-    except Exception as error:
-        raise ValueError(f"path: {path} cannot be read as glTF: {type(error).__name__}: {error}") from None
+    resolver = trimesh.resolvers.FilePathResolver(str(path))
+    read = read_scene(path, io.BytesIO(data), file_type=kind, resolver=resolver)
     found: dict[int, list[Any]] = {}
     for mesh in read.geometry.values():
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
@@ -126,16 +121,9 @@ def _placed(header: dict[str, Any]) -> Iterator[tuple[dict[str, Any], Floats]]:
 def _transform(node: dict[str, Any]) -> Floats:
     if "matrix" in node:
         return np.array(node["matrix"], float).reshape(4, 4).T
-    made = np.eye(4)
     x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
-    rotation = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-    made[:3, :3] = rotation * np.array(node.get("scale", (1.0, 1.0, 1.0)))
+    made: Floats = import_trimesh().transformations.quaternion_matrix((w, x, y, z))
+    made[:3, :3] *= node.get("scale", (1.0, 1.0, 1.0))
     made[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
     return made
 
@@ -164,32 +152,22 @@ def _add_light(model: Model, light: dict[str, Any], to_world: Floats) -> None:
     strength = np.array(light.get("color", (1.0, 1.0, 1.0)), float) * light.get("intensity", 1.0) / LUMENS_PER_WATT
     if "range" in light:
         model.notes.append("the range of lights")
-    add: Callable[[Scene, Any, Any], None]
-    if light["type"] == "directional":
-
-        def add(scene: Scene, place: Any, ahead: Any) -> None:
-            scene.add_sun_light(ahead, 0.0, strength)
-
-    elif light["type"] == "spot":
-        cone = light.get("spot", {})
-        outer, inner = cone.get("outerConeAngle", 0.25 * math.pi), cone.get("innerConeAngle", 0.0)
-        fades = min((math.cos(inner) - math.cos(outer)) / (1.0 - math.cos(outer)), 1.0)
-
-        def add(scene: Scene, place: Any, ahead: Any) -> None:
-            scene.add_spot_light(place, ahead, 2.0 * outer, fades, strength)
-
-    elif light["type"] == "point":
-
-        def add(scene: Scene, place: Any, ahead: Any) -> None:
-            scene.add_point_light(place, strength)
-
-    else:
-        model.notes.append(f"lights of the type {light['type']}")
+    kind, cone = light["type"], light.get("spot", {})
+    if kind not in ("directional", "spot", "point"):
+        model.notes.append(f"lights of the type {kind}")
         return
+    outer, inner = cone.get("outerConeAngle", 0.25 * math.pi), cone.get("innerConeAngle", 0.0)
+    fades = min((math.cos(inner) - math.cos(outer)) / (1.0 - math.cos(outer)), 1.0)
 
     def placed(scene: Scene, frame: Floats) -> None:
         turned = _rigid(frame @ to_world)
-        add(scene, turned[:3, 3], -turned[:3, 2])
+        place, ahead = turned[:3, 3], -turned[:3, 2]
+        if kind == "directional":
+            scene.add_sun_light(ahead, 0.0, strength)
+        elif kind == "spot":
+            scene.add_spot_light(place, ahead, 2.0 * outer, fades, strength)
+        else:
+            scene.add_point_light(place, strength)
 
     model.lights.append(placed)
 

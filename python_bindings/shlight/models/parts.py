@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,16 @@ def import_trimesh() -> Any:
     except ImportError as error:
         raise ImportError(f"shlight.load needs {error.name}: pip install 'shlight[files]'", name=error.name) from None
     return trimesh
+
+
+def read_scene(path: Path, source: Any, **options: Any) -> Any:
+    """The trimesh.Scene of what a file holds; ValueError naming the file where trimesh cannot read it."""
+    try:
+        return import_trimesh().load_scene(source, process=False, **options)
+    except OSError:
+        raise
+    except Exception as error:
+        raise ValueError(f"path: {path} cannot be read: {type(error).__name__}: {error}") from None
 
 
 @dataclass

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from shlight import nodes
-from shlight.models.parts import COLORS, Look, Model, Part, colors_of, import_trimesh
+from shlight.models.parts import COLORS, Look, Model, Part, colors_of, import_trimesh, read_scene
 from shlight.models.pictures import Pictures
 from shlight.nodes.values import Color, color
 
@@ -42,13 +42,7 @@ def read_ply(path: Path) -> Model:
 
 def _meshes(path: Path, **options: Any) -> list[tuple[str, Any, Any]]:
     """Name, mesh of trimesh and places (i, 4, 4) of all that has triangles."""
-    trimesh = import_trimesh()
-    try:
-        scene = trimesh.load_scene(str(path), process=False, **options)
-    except OSError:
-        raise
-    except Exception as error:
-        raise ValueError(f"path: {path} cannot be read: {type(error).__name__}: {error}") from None
+    scene = read_scene(path, str(path), **options)
     places: dict[str, list[Any]] = {}
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -56,7 +50,7 @@ def _meshes(path: Path, **options: Any) -> list[tuple[str, Any, Any]]:
     return [
         (name, mesh, np.stack(places[name]))
         for name, mesh in scene.geometry.items()
-        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and name in places
+        if isinstance(mesh, import_trimesh().Trimesh) and len(mesh.faces) and name in places
     ]
 
 
