@@ -234,17 +234,7 @@ class DirectionLanes {
     /// Adds `scale` times f·cos towards ω_i = (x, y, z), as slowly varying factors times D(h) / 4.
     HWY_INLINE void add_lobes(V<D> x, V<D> y, V<D> z, V<D> scale, std::array<V<D>, 3>& colors) const {
         const D d;
-        const auto half_x = hn::Add(x, all(d, sin_o_));
-        const auto half_z = hn::Add(z, all(d, cos_o_));
-        const auto across = hn::MulAdd(half_x, half_x, hn::Mul(y, y));
-        const auto up = hn::Mul(half_z, half_z);
-        const auto square = hn::Add(across, up);
-        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
-        const HalfVector<D> half = {hn::Mul(half_x, inverse), hn::Mul(y, inverse), hn::Mul(half_z, inverse),
-                                    hn::Mul(all(d, 0.5), hn::Mul(square, inverse))};
-        const auto sharpness = hn::Div(square, hn::MulAdd(all(d, alpha2_), up, across));
-        const auto peak = all(d, alpha2_ / (4 * std::numbers::pi));
-        const auto ndf = hn::Mul(hn::Mul(peak, sharpness), sharpness);
+        const auto [half, ndf] = half_vector(d, hn::Add(x, all(d, sin_o_)), y, hn::Add(z, all(d, cos_o_)), alpha2_);
         const auto scaled = hn::IfThenElseZero(hn::Gt(z, hn::Zero(d)), hn::Mul(scale, ndf));
         for (const WeightedLobe& weighted : lobes_) {
             with_lobe_lanes(weighted.shape, [&](const auto& lobe) HWY_ATTR {

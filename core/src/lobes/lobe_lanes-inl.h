@@ -18,6 +18,7 @@
 
 #include <hwy/highway.h>
 
+#include <numbers>
 #include <variant>
 
 #include "lobes/ggx-inl.h"
@@ -28,6 +29,26 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
+
+/// The half vector of s = ω_i + ω_o, and D(h) / 4 for the square of a lobe's width. It uses sin²θ_h, since 1 - cos²θ_h
+/// would lose the digits that decide the peak of a narrow lobe.
+template <class D>
+struct HalfAndNdf {
+    HalfVector<D> half;
+    V<D> quarter_ndf;
+};
+template <class D>
+HWY_INLINE HalfAndNdf<D> half_vector(D d, V<D> x, V<D> y, V<D> z, double alpha2) {
+    const auto across = hn::MulAdd(x, x, hn::Mul(y, y));
+    const auto up = hn::Mul(z, z);
+    const auto square = hn::Add(across, up);
+    const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+    const auto sharpness = hn::Div(square, hn::MulAdd(all(d, alpha2), up, across));
+    const auto peak = all(d, alpha2 / (4 * std::numbers::pi));
+    return {
+        {hn::Mul(x, inverse), hn::Mul(y, inverse), hn::Mul(z, inverse), hn::Mul(all(d, 0.5), hn::Mul(square, inverse))},
+        hn::Mul(hn::Mul(peak, sharpness), sharpness)};
+}
 
 /// Calls function(lanes) with the lanes class of the shape.
 template <class Function>

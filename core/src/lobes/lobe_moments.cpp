@@ -8,14 +8,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "lobes/moments_kernel.h"
 #include "lobes/view_grid.h"
 #include "math/gauss_legendre.h"
-#include "math/legendre.h"
 
 namespace shlight {
 namespace {
 
 constexpr int kPanelPoints = 16;
+static_assert(kPanelPoints % kMomentLanes == 0);
 
 /// Longest Gauss panel [rad]: it holds fewer than three waves of band 63, which sixteen points integrate to 1e-10.
 constexpr double kLongestPanel = std::numbers::pi / 12;
@@ -54,38 +55,6 @@ QuadratureRule graded_rule(double from, double to, const std::vector<Feature>& f
     return rule;
 }
 
-/// Azimuths 0 … π counted from the mirror direction of ω_o = (sinθ_o, 0, cosθ_o), which lies at φ = π.
-struct Azimuths {
-    std::vector<double> weights;
-    std::vector<double> cosines, sines;  ///< cos mφ and sin mφ for m = 0 … 63, node by node
-
-    explicit Azimuths(QuadratureRule rule)
-        : weights(std::move(rule.weights)), cosines(weights.size() * kMaxOrder), sines(cosines.size()) {
-        for (std::size_t j = 0; j < weights.size(); ++j) {
-            complex_powers(-std::cos(rule.nodes[j]), std::sin(rule.nodes[j]), kMaxOrder, &cosines[j * kMaxOrder],
-                           &sines[j * kMaxOrder]);
-        }
-    }
-};
-
-/// Fourier moments of the lobe over the azimuth at one θ: out[m] = ∫ f·cos cos mφ dφ; returns ∫ (f·cos)² dφ.
-double azimuth_moments(const LobeShape& shape, double sine, double cosine, const Vec3d& wo, const Azimuths& phi,
-                       std::vector<double>& out) {
-    std::fill(out.begin(), out.end(), 0.0);
-    double square = 0;
-    for (std::size_t j = 0; j < phi.weights.size(); ++j) {
-        const double* c = &phi.cosines[j * kMaxOrder];
-        const Vec3d wi(sine * c[1], sine * phi.sines[j * kMaxOrder + 1], cosine);
-        const double f = lobe_value(shape, wi, wo);
-        const double weighted = 2 * f * phi.weights[j];
-        square += f * weighted;
-        for (std::size_t m = 0; m < kMaxOrder; ++m) {
-            out[m] += weighted * c[m];
-        }
-    }
-    return square;
-}
-
 }  // namespace
 
 LobeRule lobe_rule(double width, double theta_o, int panel_points) {
@@ -101,32 +70,9 @@ double least_grazing(double theta_o) {
 }
 
 LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
-    const Vec3d wo(std::sin(theta_o), 0.0, std::cos(theta_o));
-    const auto [theta, around] = lobe_rule(lobe_width(shape), theta_o, kPanelPoints);
-    const Azimuths phi(around);
-
-    LobeMoments result{std::vector<double>(kCosineMax, 0.0), 0.0};
-    std::vector<double> fourier(kMaxOrder);
-    std::vector<double> sines(kMaxOrder);
-    for (std::size_t i = 0; i < theta.nodes.size(); ++i) {
-        const double sine = std::sin(theta.nodes[i]);
-        const double cosine = std::cos(theta.nodes[i]);
-        const double weight = theta.weights[i] * sine;
-        result.norm_squared += weight * azimuth_moments(shape, sine, cosine, wo, phi, fourier);
-        powers(sine, kMaxOrder, sines.data());
-        for (std::size_t m = 0; m < kMaxOrder; ++m) {
-            fourier[m] *= weight * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
-        }
-        LegendreRows<double> legendre(cosine, sine * sine);
-        for (int l = 0; l < kMaxOrder; ++l) {
-            for (int m = 0; m <= l; ++m) {
-                result.moments[at(l, m)] += legendre[m] * fourier[m];
-            }
-            if (l + 1 < kMaxOrder) {
-                legendre.advance();
-            }
-        }
-    }
+    LobeMoments result{std::vector<double>(kCosineMax), 0.0};
+    const LobeRule rule = lobe_rule(lobe_width(shape), theta_o, kPanelPoints);
+    result.norm_squared = integrate_moments(shape, std::cos(theta_o), rule, result.moments);
     return result;
 }
 
