@@ -54,12 +54,22 @@ void EnvironmentSpots::add(const BrightSpot& spot, int across, Arrays& spots) co
     const glm::dvec2 texel = texel_of(spot.direction, picture.width, picture.height);
     const double step = 2.0 / across;
     const double sine = std::hypot(spot.direction.x, spot.direction.y);
+    // A column of directions has one azimuth, and a row one height.
+    std::array<glm::dvec2, kMostAcross> azimuths{};
+    for (int column = 0; column < across; ++column) {
+        const glm::dvec2 off((column + 0.5) * step - 1.0, 0.0);
+        azimuths[static_cast<std::size_t>(column)] =
+            glm::normalize(glm::dvec2(direction_of(texel + off, picture.width, picture.height)));
+    }
     for (int row = 0; row < across; ++row) {
+        const double down = (row + 0.5) * step - 1.0;
+        const Vec3d outmost = direction_of(texel + glm::dvec2(0.0, down), picture.width, picture.height);
+        // Negative beyond a pole.
+        const double radius = (outmost.x * spot.direction.x + outmost.y * spot.direction.y) / sine;
+        const double share = (1 - std::abs(down)) * step * step * std::abs(radius) / sine;
         for (int column = 0; column < across; ++column) {
-            const glm::dvec2 off = (glm::dvec2(column, row) + 0.5) * step - 1.0;
-            const Vec3d direction = direction_of(texel + off, picture.width, picture.height);
-            const double share = (1 - std::abs(off.x)) * (1 - std::abs(off.y)) * step * step;
-            push(direction, share * std::hypot(direction.x, direction.y) / sine);
+            const glm::dvec2 at = radius * azimuths[static_cast<std::size_t>(column)];
+            push({at.x, at.y, outmost.z}, share * (1 - std::abs((column + 0.5) * step - 1.0)));
         }
     }
 }
