@@ -31,6 +31,7 @@ WRONG_ROWS: dict[str, Callable[[], Any]] = {
     "radii[512] must be positive": lambda: shlight.sphere_coefficients(CENTERS, one_wrong(-1), 3),
     "radii[5, 12]": lambda: shlight.shade_spheres(CENTERS[0], one_wrong(0).reshape(20, 100), MATTE, 0.5),
     "radii[0, 512]": lambda: shlight.shade_spheres(CENTERS[:3, None], one_wrong(9)[None], MATTE, 0.5),
+    "radii[1]": lambda: shlight.shade_spheres([0, 0, 2], [1, 3], MATTE, 1, gradient=True),
     "radii must": lambda: shlight.shade_spheres(CENTERS, -1.0, MATTE, 0.5),
     "half_angles[1999]": lambda: shlight.cap_coefficients(CENTERS, one_wrong(9, 1999), 3, method="quadrature"),
     "directions[7]": lambda: shlight.sh_basis(CENTERS * (np.arange(2000) != 7)[:, None], 3),

@@ -24,14 +24,6 @@ def test_calls_and_scenes_are_answered(calls: int, scenes: int) -> None:
     assert not found, fuzz.report(found)
 
 
-def test_a_number_and_a_seed_make_one_case() -> None:
-    for kind in fuzz.KINDS:
-        cases = [fuzz.Case(kind, seed, number) for seed in (1, 2) for number in range(30)]
-        codes = [fuzz.code_of(case.steps()) for case in cases]
-        assert codes == [fuzz.code_of(case.steps()) for case in cases]
-        assert len(set(codes)) == len(cases)
-
-
 def faulty(fault: str, **counts: int) -> dict[fuzz.Case, str]:
     """What is found where a function is replaced in all processes that work."""
     script = f"import os, sys, time\nsys.path.insert(0, {FOLDER!r})\nimport shlight\n{fault}\nimport fuzz\nfuzz.main()"
@@ -70,32 +62,3 @@ def test_wrong_coefficients_are_found(result: Any, problem: str) -> None:
     assert Step("", shlight.sphere_coefficients, sphere, True, check).complaint() is None
     wrong = Step("", lambda **given: result(shlight.sphere_coefficients(**given)), sphere, True, check)
     assert problem in str(wrong.complaint())
-
-
-def raised(error: Exception) -> Any:
-    def function(radii: float) -> None:
-        raise error
-
-    return function
-
-
-@pytest.mark.parametrize(
-    ("function", "accepted", "problem"),
-    [
-        (raised(ValueError("radii must be positive")), None, "None"),
-        (raised(ValueError("radii must be positive")), True, "refused"),
-        (raised(ValueError("must be positive: radii")), None, "names no argument"),
-        (raised(TypeError("radiis")), None, "names no argument"),
-        (raised(RuntimeError("radii")), None, "RuntimeError"),
-        (lambda radii: radii, False, "accepted"),
-        (lambda radii: np.array(radii) / 0, None, "RuntimeWarning"),
-        (lambda radii: (np.ones(2), np.array([radii, np.inf])), None, "not finite"),
-    ],
-)
-def test_wrong_answers_are_found(function: Any, accepted: bool | None, problem: str) -> None:
-    assert problem in str(Step("", function, {"radii": 1.0}, accepted).complaint())
-
-
-def test_scenes_are_checked() -> None:
-    found = faulty("shlight.render = lambda *_, **__: np.full((1, 1, 4), np.nan)\nimport numpy as np", scene=5)
-    assert "render: the picture is not finite" in found.values()

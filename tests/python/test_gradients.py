@@ -235,21 +235,3 @@ def test_hidden_degenerate_and_touching_lights_are_finite() -> None:
         assert not part.any()
     for part in shlight.shade_spheres([[-0.6, 0, 0.8]], 0.2, Bsdf.ggx(0, 1), 0.8, gradient=True)[1]:
         assert not part.any()  # a mirror shows the light or not
-
-
-def test_wrong_arguments_are_named() -> None:
-    bsdf = Bsdf.lambert(1)
-    for pattern, call in {
-        "order must be 1 … 63": lambda: shlight.sphere_coefficients([0, 0, 2], 1, 64, gradient=True),
-        "method must be 'exact'": lambda: shlight.sphere_coefficients(
-            [0, 0, 2], 1, 3, method="zhou_wei", gradient=True
-        ),
-        "order must be 'auto'": lambda: shlight.shade_spheres([0, 0, 2], 1, bsdf, 1, order=3, gradient=True),
-        "method must be 'auto'": lambda: shlight.shade_spheres(
-            [0, 0, 2], 1, bsdf, 1, method="quadrature", gradient=True
-        ),
-        "gradient must be one of 'places'": lambda: shlight.shade_spheres([0, 0, 2], 1, bsdf, 1, gradient="all"),
-        r"radii\[1\]": lambda: shlight.shade_spheres([0, 0, 2], [1, 3], bsdf, 1, gradient=True),
-    }.items():
-        with pytest.raises(ValueError, match=pattern):
-            call()

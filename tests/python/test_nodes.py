@@ -75,12 +75,6 @@ def test_a_lobe_that_only_some_hits_have(light: str) -> None:
     assert error.max() <= 2e-3  # the tolerance of either picture
 
 
-def test_lobes_of_one_shape_are_one() -> None:
-    u = nodes.uv().x
-    shader = nodes.principled((0.5, 0.4, 0.3), metallic=u, roughness=u)
-    assert sorted(lobe.kind for lobe in shader.lobes) == ["ggx", "ggx_dielectric", "ggx_schlick", "lambert"]
-
-
 def test_a_program_is_as_long_as_what_varies() -> None:
     half = nodes.values.number(0.5)
     assert nodes.lambert(nodes.mix_color((1, 0, 0), (0, 1, 0), half * half, "overlay")).operation_count == 0
@@ -226,20 +220,6 @@ def test_numbers_of_a_picture_keep_their_type(kind: type[np.generic]) -> None:
     np.testing.assert_allclose(
         at(3.0, 1.0, 2.0), block, rtol=rounding + 1e-6, atol=step + 1e-6 * abs(values[2:, 2:4]).max()
     )
-
-
-@pytest.mark.parametrize(
-    ("call", "named"),
-    [
-        (lambda: nodes.image(np.ones((2, 2, 5))), "pixels"),
-        (lambda: nodes.image(np.ones((2, 2, 3)), interpolation="nearest"), "interpolation"),
-        (lambda: nodes.lambert("red"), "albedo"),
-        (lambda: nodes.mix_color(1, 0, 0.5, "over"), "blend"),
-    ],
-)
-def test_bad_arguments_are_named(call: Any, named: str) -> None:
-    with pytest.raises(ValueError, match=named):
-        call()
 
 
 def test_kept_energies_are_what_computing_them_gives() -> None:

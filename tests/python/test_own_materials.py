@@ -409,20 +409,6 @@ def test_files_that_are_refused(tmp_path: Path) -> None:
         Bsdf.read(tmp_path / "missing.bin")
 
 
-def test_tables_that_are_refused() -> None:
-    theta, phi = np.linspace(0, PI / 2, 3), np.linspace(0, 2 * PI, 4, endpoint=False)
-    values = np.ones((3, 4, 3, 4))
-    for arguments, message in (
-        ((values[:2], theta, phi, theta, phi), "values must have shape"),
-        ((-values, theta, phi, theta, phi), "values must lie in"),
-        ((values, theta[::-1], phi, theta, phi), "theta_in must be finite and increasing"),
-        ((values, theta, phi, np.degrees(theta), phi), "theta_out must lie in"),
-        ((values, theta, phi, theta, np.degrees(phi)), "phi_out must span one turn"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            Bsdf.from_table(*arguments)
-
-
 def test_a_method_of_an_anisotropic_material_is_refused(anisotropic: Bsdf) -> None:
     with pytest.raises(ValueError, match="method must be 'auto' for an anisotropic bsdf"):
         shlight.shade_spheres([0, 0, 1.0], 0.2, anisotropic, 0.5, method="monte_carlo")

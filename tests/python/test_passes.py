@@ -171,29 +171,6 @@ def test_direct_passes_do_not_change_when_light_bounces() -> None:
         assert bounced[f"{kind}_indirect"].max() > 0.05
 
 
-def test_a_group_is_the_picture_of_its_lights_alone() -> None:
-    def scene_of(groups: tuple[str, ...]) -> shlight.Scene:
-        scene = shlight.Scene()
-        scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert(0.6) + shlight.Bsdf.ggx(0.4, (0.04, 0.04, 0.04)))
-        scene.add_mesh(0.4 * SQUARE + np.array([0.2, 0.1, 0.8]), FACES)
-        if "key" in groups:
-            scene.add_sphere_light([1, -1, 3], 0.3, (20, 16, 12), group="key")
-        if "fill" in groups:
-            scene.add_polygon_light(SQUARE[::-1] + np.array([-2, 1, 3]), (2, 3, 4), group="fill")
-        if "point" in groups:
-            scene.add_point_light([1, 1, 2], (2, 1, 1), group="point")
-        if "sky" in groups:
-            scene.set_environment((0.2, 0.3, 0.4), group="sky")
-        return from_above(scene)
-
-    names = ("key", "fill", "point", "sky")
-    options: dict[str, Any] = {"max_samples": 64, "noise_threshold": 0.002, "shadow_rays": 64}
-    groups = groups_of(shlight.render(scene_of(names), 32, 32, groups=True, **options, max_bounces=0))
-    for name in names:
-        alone = shlight.render(scene_of((name,)), 32, 32, **options, max_bounces=0)[..., :3]
-        assert rel_mse(groups[name], alone) <= 1e-3, name
-
-
 def test_a_group_has_the_light_of_its_lamps_after_all_bounces() -> None:
     """Each group's light differs from a render of its lamps alone by no more than renders of other seeds do."""
 

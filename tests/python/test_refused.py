@@ -36,6 +36,10 @@ OF_NODES: dict[str, tuple[Any, str, tuple[Any, ...]]] = {
     "mix": (lambda factor: nodes.mix(nodes.lambert(0.5), nodes.emission(1.0), factor), "factor", ("half", NAN, INF)),
     "glass": (lambda ior: nodes.glass(0.5, 0.1, ior), "ior", ("high", NAN, INF)),
     "product": (nodes.lambert(0.5).__mul__, "factor", NO_COLOR),
+    "lambert": (nodes.lambert, "albedo", ("red",)),
+    "image": (nodes.image, "pixels", (np.ones((2, 2, 5)),)),
+    "interpolation": (lambda kind: nodes.image(np.ones((2, 2, 3)), interpolation=kind), "interpolation", ("nearest",)),
+    "mix_color": (lambda blend: nodes.mix_color(1, 0, 0.5, blend), "blend", ("over",)),
 }
 UNKNOWN = {
     "cap_coefficients": ("tolerance", "samples", "seed", "sampling"),
@@ -89,6 +93,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "focus_distance": (0, 1e-11),
     "fov_x": (0, np.pi),
     "glossy_bounces": (-1, 1025),
+    "gradient": ("all",),
     "group": (3, ""),
     "groups": (1,),
     "half_angles": (*NO_NUMBER, 0, -1, [0.5, -0.5], 3.15),
@@ -115,6 +120,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "min_samples": (0, 8),
     "mist": ((1.0, 2.0), (1.0, INF, 2.0)),
     "noise_threshold": (-1, NAN),
+    "View.relight.noise_threshold": (0, -1, NAN, 2),
     "normal": (np.ones((2, 2, 4)),),
     "normals": (np.full((3, 3), NAN), np.ones((4, 3)), "up"),
     "shading_frames.normals": ([[0, 0, 1], [0, 0, 0]],),
@@ -126,6 +132,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "panorama_type": ("fisheye",),
     "passes": (["deep"], "depth", ["depth", "depth"]),
     "images.write_layers.passes": ({}, "depth"),
+    "phi_out": ([0.0, 120.0, 240.0],),
     "pixel_filter": ("tent",),
     "pixel_samples": (0,),
     "points": ([[0, 0, 0], [NAN, 0, 0]], [[0, 0]], [0, 2e10, 0]),
@@ -153,6 +160,8 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "spot_angle": (0.0, 4.0),
     "spread": (0.0, 4.0),
     "tangents": ([0, 0, 0], [0, NAN, 0]),
+    "theta_in": ([1.0, 0.0],),
+    "theta_out": ([0.0, 57.0],),
     "threads": (-1, 1.5, None),
     "time_limit": (0, NAN),
     "to_world": (np.eye(3), np.zeros((4, 4)), np.full((4, 4), NAN), "north", 1.0, placed(0, FAR[0], 0)),
@@ -166,6 +175,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "transmission_bounces": (-1, 1025),
     "triangles": ([[0, 1, 3]], [[0, 1, -1]], [[0, 1, 2**32]], [[0, 1]], np.ones((1, 3))),
     "uvs": (np.zeros((3, 3)),),
+    "values": (np.ones((1, 3, 2, 3)), -np.ones((2, 3, 2, 3))),
     "vertices": NO_POLYGON,
     "Scene.add_mesh.vertices": (np.ones((3, 2)), np.full((3, 3), NAN), "floor", np.ones((3, 3), complex), FAR_MESH),
     "Scene.add_polygon_light.vertices": (
@@ -204,6 +214,10 @@ TOGETHER: list[tuple[str, dict[str, Any], str]] = [
     ("cap_coefficients/random", {"sampling": "mis"}, "sampling"),
     ("shade_spheres/quadrature", {"bsdf": Bsdf.ggx(0, 1)}, "bsdf"),
     ("shade_spheres/plain_harmonics", {"order": "auto"}, "order"),
+    ("sphere_coefficients/gradient", {"order": 64}, "order"),
+    ("sphere_coefficients/gradient", {"method": "zhou_wei"}, "method"),
+    ("shade_spheres/gradient", {"order": 3}, "order"),
+    ("shade_spheres/gradient", {"method": "quadrature"}, "method"),
     # A method refuses arguments that it does not know.
     *(
         (call, {name: value}, name)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lobe_cubature import view_direction
-from shading_cases import cosines, random_light, random_quad, roughnesses
+from shading_cases import cosines, random_light, random_quad
 from strategies import Floats, polygons, reproducible, spheres
 
 import shlight
@@ -102,21 +102,6 @@ def test_narrow_lobes_tend_to_mirrors() -> None:
 
 
 # --- what must hold for any light ---------------------------------------------------------------------------------
-
-
-@reproducible
-@given(spheres(), polygons(), roughnesses, cosines, st.integers(-100, 100))
-def test_scale_does_not_matter(
-    sphere: tuple[Floats, float], vertices: Floats, roughness: float, cosine: float, exponent: int
-) -> None:
-    bsdf, scale = Bsdf.ggx(roughness, 0.7), 2.0**exponent
-    np.testing.assert_array_equal(
-        shlight.shade_spheres(scale * sphere[0], scale * sphere[1], bsdf, cosine),
-        shlight.shade_spheres(*sphere, bsdf, cosine),
-    )
-    np.testing.assert_array_equal(
-        shlight.shade_polygons(scale * vertices, bsdf, cosine), shlight.shade_polygons(vertices, bsdf, cosine)
-    )
 
 
 def test_extremes_are_finite() -> None:

