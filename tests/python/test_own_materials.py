@@ -477,7 +477,7 @@ def test_a_picture_tints_a_material(isotropic: Bsdf, threads: Bsdf) -> None:
     floor = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     for bsdf in (isotropic * [1, 0.5, 0.2] + Bsdf.lambert(0.1), threads, Bsdf.layer(Bsdf.ggx(0.4, 0.3), threads)):
         images = []
-        for material in (bsdf, bsdf * tint):
+        for material in (bsdf, tint * bsdf):
             scene = shlight.Scene()
             scene.add_mesh(floor, [[0, 1, 2], [0, 2, 3]], uvs=floor[:, :2] / 2 + 0.5, bsdf=material)
             scene.add_sphere_light((0.5, -0.4, 1), 0.3, 1)

@@ -72,9 +72,11 @@ def _of_numbers(name: str) -> tuple[Callable[[Value, Number], Value], Callable[[
 
 
 def _of_vectors(name: str) -> tuple[Callable[[Vector, Varying], Vector], Callable[[Vector, Varying], Vector]]:
-    """The same of vectors, by component."""
+    """The same of vectors, by component. A material on the right multiplies itself."""
 
     def left(a: Vector, b: Varying) -> Vector:
+        if hasattr(b, "is_anisotropic"):
+            return NotImplemented
         return type(a)(*(arithmetic(name, *pair) for pair in zip(a, triple(b), strict=True)))
 
     def right(b: Vector, a: Varying) -> Vector:
