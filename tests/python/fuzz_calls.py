@@ -53,9 +53,9 @@ class Step:
                 warnings.simplefilter("error")
                 result = self.function(**self.arguments)
         except (TypeError, ValueError) as error:
-            # Exceptions of `progress` are passed on, and mirrors have no coefficients, for all arguments.
+            # Exceptions of functions that are given are passed on, and mirrors have no coefficients, for all arguments.
             named = re.match(rf"({'|'.join(names)}|a perfect mirror)\b|.*do not broadcast$", str(error))
-            if not named and "progress" not in names:
+            if not named and not names & {"progress", "f"}:
                 return f"the error names no argument: {type(error).__name__}: {error}"
             return f"refused: {error}" if self.accepted else None
         except (OSError, shlight.RenderCancelled) as error:
@@ -176,6 +176,14 @@ def shaded_light(rng: Rng) -> Step:
     return step
 
 
+def derived_light(rng: Rng) -> Step:
+    step = one_of(rng, coefficients_of_light, shaded_light)(rng)
+    if step.call in ("sphere_coefficients", "shade_spheres", "shade_polygons"):
+        step.arguments["gradient"], step.accepted = True, None
+        step.check = lambda result: finite((result[0], *result[1]))
+    return step
+
+
 def any_arguments(rng: Rng) -> Step:
     """A call of the walk with up to three arguments replaced by any object, number or array."""
     call = one_of(rng, *argument_walk.CALLS)
@@ -198,4 +206,4 @@ def any_arguments(rng: Rng) -> Step:
 
 
 def random_call(rng: Rng) -> list[Step]:
-    return [one_of(rng, coefficients_of_light, coefficients_of_light, shaded_light, any_arguments)(rng)]
+    return [one_of(rng, coefficients_of_light, coefficients_of_light, shaded_light, derived_light, any_arguments)(rng)]

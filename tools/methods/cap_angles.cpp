@@ -8,10 +8,12 @@ namespace shlight::methods {
 
 template <class T>
 CapAngles<T>::CapAngles(const CapLight& light) {
-    const double length = safe_length(light.axis);
-    axis = Vec3<T>(light.axis / length);
+    const double scale = safe_scale(light.axis);
+    const Vec3d scaled = light.axis * scale;
+    const double length = glm::length(scaled);
+    axis = Vec3<T>(scaled / length);
     if (light.kind == CapLight::Kind::sphere) {
-        const double sine = light.size / length;
+        const double sine = light.size * scale / length;
         const double cosine = std::sqrt((1 - sine) * (1 + sine));
         cos_half = static_cast<T>(cosine);
         sin_half = static_cast<T>(sine);

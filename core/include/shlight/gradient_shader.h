@@ -20,8 +20,8 @@ namespace shlight {
 /// computed in double. Each derivative has three numbers, RGB, of unit radiance, before those of what it is taken by.
 ///
 /// Mirrors show a light or not: their derivatives are 0, as are those of hidden lights and of polygons without area or
-/// seen edge-on. by_roughness moves the roughness of all GGX lobes of the material together, and leaves the lobes'
-/// weights, as of layers, alone; other lobes have none.
+/// seen edge-on. A derivative beyond the range of T is the largest number of T. by_roughness moves the roughness of all
+/// GGX lobes of the material together, and leaves the lobes' weights, as of layers, alone; other lobes have none.
 class GradientShader {
   public:
     explicit GradientShader(Bsdf bsdf) : bsdf_(std::move(bsdf)) {}

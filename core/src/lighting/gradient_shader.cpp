@@ -90,9 +90,15 @@ const View& view_of(const Bsdf& bsdf, const LightViews& views, std::size_t light
 }
 
 template <class T>
+T within_range(double number) {
+    constexpr double kLargest = std::numeric_limits<T>::max();
+    return static_cast<T>(std::clamp(number, -kLargest, kLargest));
+}
+
+template <class T>
 void write(const Vec3d& from, T* to) {
     for (int k = 0; k < 3; ++k) {
-        to[k] = static_cast<T>(from[k]);
+        to[k] = within_range<T>(from[k]);
     }
 }
 
@@ -100,14 +106,14 @@ void write(const Vec3d& from, T* to) {
 /// horizon.
 template <class T>
 void move_sphere(const View& view, const Arc<double>& arc, double radius, T* by_center, T* by_radius) {
-    const double distance = radius / arc.sine;
-    const double stretch = arc.cosine > 0 ? arc.sine / (arc.cosine * distance) : 0;  // of σ by r, times sinσ
+    const double over_distance = 1 / std::max(radius / arc.sine, std::numeric_limits<double>::min());
+    const double stretch = arc.cosine > 0 ? arc.sine / arc.cosine : 0;  // of σ by r, times sinσ and the distance
     const ArcSums sums = view.sums(arc, {arc.sine, 1, 1});
     for (std::size_t channel = 0; channel < 3; ++channel) {
         const auto [one, cosine, sine] = std::array{sums[3 * channel], sums[3 * channel + 1], sums[3 * channel + 2]};
         const Vec3d across = cosine * arc.middle + sine * glm::cross(arc.axis, arc.middle);
-        write(arc.sine / distance * across - arc.sine * stretch * one * arc.axis, by_center + 3 * channel);
-        by_radius[channel] = static_cast<T>(stretch * one);
+        write(over_distance * (arc.sine * (across - stretch * one * arc.axis)), by_center + 3 * channel);
+        by_radius[channel] = within_range<T>(over_distance * (stretch * one));
     }
 }
 

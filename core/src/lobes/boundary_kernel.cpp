@@ -52,8 +52,8 @@ struct RadiusEnds {
         const auto inverse = hn::IfThenElseZero(valid, hn::Div(all(d, 1), across));
         cosine = hn::Mul(x, inverse);
         sine = hn::Mul(y, inverse);
-        turn = hn::Mul(hn::Mul(hn::MulSub(x, step(1), hn::Mul(y, step(0))), hn::Mul(inverse, inverse)),
-                       all(d, 2 / std::numbers::pi));
+        turn = hn::Mul(hn::MulSub(cosine, step(1), hn::Mul(sine, step(0))),
+                       hn::Mul(inverse, all(d, 2 / std::numbers::pi)));
         end = hn::Div(across, hn::Add(z, hn::Sqrt(hn::MulAdd(z, z, square))));
     }
 };

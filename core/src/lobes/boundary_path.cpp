@@ -45,7 +45,11 @@ void ArcPath::even_out() {
             boost_by_half(axis, std::clamp(ratio, -1 + 1e-14, 1 - 1e-14));
             largest = std::max(largest, std::abs(ratio));
         }
-        turn_by_half(form(1, 1) - form(2, 2), 2 * form(1, 2));
+        // Squares of the forms of a tiny circle would vanish.
+        const double size = form(1, 1) + form(2, 2);
+        if (size > 0) {
+            turn_by_half((form(1, 1) - form(2, 2)) / size, 2 * form(1, 2) / size);
+        }
     }
     if (form(2, 2) > form(1, 1)) {
         turn(0, 1);

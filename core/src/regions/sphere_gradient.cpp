@@ -41,7 +41,9 @@ CapMotion<T> motion_of(const Vec3<T>& center, T radius, bool clip) {
                         0,
                         0};
     if (clip && std::abs(c.z) < r) {
-        const double chord = std::sqrt((r - c.z) * (r + c.z)) / distance;  // Eq. 8 of docs/theory.md
+        // Eq. 8 of docs/theory.md, for radii of any size.
+        const double height = std::abs(c.z);
+        const double chord = cap.sine * std::sqrt((r - height) / r * (1 + height / r));
         const double across = std::hypot(chord, cap.cosine);
         const double radial = std::hypot(cap.axis.x, cap.axis.y);
         motion.azimuth_cosine = static_cast<T>(radial > 0 ? cap.axis.x / radial : 1);
