@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Derivatives of integrals over lights by other means than the library's: of f·cos by steps into the complex plane
-through cubature over the light's interior, and of coefficients by differences of mpmath's integrals.
+"""Derivatives of integrals of f·cos over lights by other means than the library's: by steps into the complex plane
+through cubature over the light's interior.
 
 Im f(x + ih)/h is f′(x) to h² without cancellation, where f is analytic: h may be 1e-30.
 """
@@ -11,7 +11,6 @@ import itertools
 from collections.abc import Callable
 from typing import Any
 
-import mpmath
 import numpy as np
 
 Values = Any  # arrays of float or complex
@@ -106,32 +105,3 @@ def _triangle(a: Values, b: Values, c: Values, f: Callable[..., Values], wo: Val
     volume = a @ np.cross(b, c)
     values = f([x / length for x in point], wo) * u * volume / length**3
     return (values @ _WEIGHTS) @ _WEIGHTS
-
-
-def coefficient(center: list[Any], radius: Any, band: int, degree: int) -> Any:
-    """∫ Y_lm over the part of a sphere light above the horizon, in mpmath: lines of latitude, one after the other."""
-    m = abs(degree)
-    distance = mpmath.sqrt(sum(x * x for x in center))
-    sigma, theta = mpmath.asin(radius / distance), mpmath.acos(center[2] / distance)
-    azimuth = mpmath.atan2(center[1], center[0])
-    scale = mpmath.sqrt((2 * band + 1) / (4 * mpmath.pi) * mpmath.factorial(band - m) / mpmath.factorial(band + m))
-
-    def legendre(z: Any) -> Any:
-        """The m-th derivative of Rodrigues' formula, (z² - 1)^l multiplied out."""
-        terms = (
-            mpmath.binomial(band, k) * (-1) ** (band - k) * mpmath.ff(2 * k, band + m) * z ** (2 * k - band - m)
-            for k in range((band + m + 1) // 2, band + 1)
-        )
-        return scale * (1 - z * z) ** (mpmath.mpf(m) / 2) * sum(terms) / (2**band * mpmath.factorial(band))
-
-    def line(z: Any) -> Any:
-        reach = (mpmath.cos(sigma) - z * mpmath.cos(theta)) / (mpmath.sin(theta) * mpmath.sqrt(1 - z * z))
-        half = mpmath.acos(max(-1, min(1, reach)))
-        return legendre(z) * (2 * mpmath.sin(m * half) / m if m else 2 * half)
-
-    ends = sorted({max(mpmath.mpf(0), mpmath.cos(theta + sigma)), mpmath.cos(abs(theta - sigma))})
-    total = mpmath.quad(line, ends) if len(ends) == 2 else mpmath.mpf(0)
-    if theta < sigma and m == 0:
-        total += 2 * mpmath.pi * mpmath.quad(legendre, [mpmath.cos(sigma - theta), 1])
-    turn = mpmath.cos(m * azimuth) if degree >= 0 else mpmath.sin(m * azimuth)
-    return total * turn * (mpmath.sqrt(2) if m else 1)

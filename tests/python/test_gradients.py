@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import Any
 
 import gradient_truth as truth
-import mpmath
 import numpy as np
 import pytest
 
@@ -57,27 +56,8 @@ def largest_error(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
-@pytest.mark.parametrize(("band", "degree"), [(0, 0), (1, -1), (2, 0), (3, 2), (4, -3), (5, 5)])
-def test_coefficients_agree_with_mpmath(band: int, degree: int) -> None:
-    with mpmath.workdps(30):
-        for center, radius in zip(*random_spheres(1, 3), strict=True):
-            numbers = [mpmath.mpf(float(x)) for x in (*center, radius)]
-            step = mpmath.mpf(10) ** -9
-            expected = []
-            for k in range(4):
-                ends = []
-                for sign in (1, -1):
-                    moved = [x + sign * step * (i == k) for i, x in enumerate(numbers)]
-                    ends.append(truth.coefficient(moved[:3], moved[3], band, degree))
-                expected.append(float((ends[0] - ends[1]) / (2 * step)))
-            gradient = shlight.sphere_coefficients(center, radius, 6, gradient=True)[1]
-            index = band * band + band + degree
-            found = np.array([*gradient.center[index], gradient.radius[index]])
-            assert largest_error(found, np.array(expected)) <= 1e-12
-
-
 @pytest.mark.parametrize("clip", [True, False])
-@pytest.mark.parametrize("order", [1, 8, 63])
+@pytest.mark.parametrize("order", [1, 6, 63])
 def test_coefficients_agree_with_differences(order: int, clip: bool) -> None:
     centers, radii = random_spheres(2, 40)
     centers = np.concatenate([centers, [[0, 0, 1.0], [0, 1e-3, 0.2]]])
@@ -99,13 +79,13 @@ def test_coefficients_agree_with_differences(order: int, clip: bool) -> None:
                 expected += sign * weight * part / (np.append(radii[:40], [1e-3, 1e-3])[:, None] * step)
         scale = np.abs(found).max(axis=(1, 2))
         error = np.abs(found[..., k] - expected).max(axis=1) / scale
-        assert np.all(error[:40] <= 1e-8)
+        assert np.all(error[:40] <= 1e-11 * order)  # roundings of 1e-15 of values, divided by the step
         assert np.all(error[40:] <= 1e-5)  # of smaller steps
 
 
 @pytest.mark.parametrize(("bsdf", "roughness"), MATERIALS)
 def test_spheres_agree_with_steps_into_the_complex_plane(bsdf: Bsdf, roughness: float | None) -> None:
-    centers, radii = random_spheres(3, 24)
+    centers, radii = random_spheres(3, 12)
     gradient = shlight.shade_spheres(centers, radii, bsdf, COSINE, gradient=True)[1]
     for i, (center, radius) in enumerate(zip(centers, radii, strict=True)):
         expected = truth.derivative(
@@ -127,7 +107,7 @@ def test_spheres_agree_with_steps_into_the_complex_plane(bsdf: Bsdf, roughness: 
 @pytest.mark.parametrize(("bsdf", "roughness"), MATERIALS)
 def test_polygons_agree_with_steps_into_the_complex_plane(bsdf: Bsdf, roughness: float | None) -> None:
     in_plane_of_view = [[-1, 0, 1], [1, 0, 1], [1, 1, 1], [-1, 1, 1]]
-    polygons = np.concatenate([random_polygons(4, 12), [in_plane_of_view]])
+    polygons = np.concatenate([random_polygons(4, 6), [in_plane_of_view]])
     gradient = shlight.shade_polygons(polygons, bsdf, COSINE, gradient=True)[1]
     for i, vertices in enumerate(polygons):
         expected = truth.derivative(lambda v: truth.polygon_radiance(v, lobe(roughness), VIEW), vertices)
