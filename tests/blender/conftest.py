@@ -8,7 +8,6 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +25,6 @@ from shlight.metrics import mean_ratio, rel_mse  # noqa: E402
 Image = NDArray[np.float32]
 # Properties of lamps and inputs of shaders that older versions of Blender lack.
 SINCE_4_5 = {"normalize", "exposure", "use_temperature", "temperature", "Diffuse_Roughness"}
-SCENES = Path(__file__).resolve().parents[3] / "shared" / "scenes"
 
 
 class Studio(PlainStudio):
@@ -85,18 +83,3 @@ def _addon() -> Iterator[None]:
 def studio(_addon: None, tmp_path: Path) -> Studio:
     """An empty file with the add-on registered."""
     return Studio(tmp_path)
-
-
-@pytest.fixture
-def shared_scene(studio: Studio) -> Any:
-    """Opens a scene of the shared folder and prepares it for comparison; skips where the folder is absent."""
-
-    def open_scene(name: str) -> Studio:
-        path = SCENES / name
-        if not path.is_file():
-            pytest.skip(f"{path} is not there")
-        bpy.ops.wm.open_mainfile(filepath=str(path))
-        studio.prepare()
-        return studio
-
-    return open_scene

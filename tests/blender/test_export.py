@@ -258,37 +258,3 @@ def test_what_is_left_out_of_a_dark_scene_is_named_first(studio: Any) -> None:
     studio.area()
     assert export().dark == ""
     assert messages()[0] == "Light 'Sun': its scale is 0; left out"
-
-
-# --- real scenes
-
-
-def test_cornell_box(shared_scene: Any) -> None:
-    studio = shared_scene("cornell_box.blend")
-    studio.resolution(48, 48)
-    # The emitter is 300 times as bright as the walls: what its edges cover counts.
-    studio.scene.shlight.pixel_samples = 256
-    studio.scene.shlight.shadow_rays = 2
-    studio.compare(error=1e-2)
-
-
-def test_lamps_of_all_types(shared_scene: Any) -> None:
-    """Compares the lamps with the file's grey world, and without."""
-    studio = shared_scene("lights.blend")
-    studio.resolution(64, 48)
-    assert "Light" not in "\n".join(messages())
-    studio.scene.cycles.samples = 2048  # small lamps: noise of Cycles
-    studio.scene.shlight.noise_threshold = 0  # a few pixels beside the lamps are most of the mean
-    studio.compare(mean=2e-3, error=1e-3)
-    studio.scene.world = bpy.data.worlds["World"]
-    studio.compare(mean=2e-3, error=1e-3)
-    assert "World" not in "\n".join(messages())
-
-
-def test_animated_character(shared_scene: Any) -> None:
-    studio = shared_scene("robot.blend")
-    studio.scene.frame_set(20)
-    studio.plane(30.0)
-    studio.area(3000, (4, -5, 8), size=2.0, rotation_euler=(0.6, 0.4, 0))
-    studio.camera((6, -9, 5), (0, 0, 2.2))
-    studio.compare(error=1e-2)

@@ -369,28 +369,3 @@ def test_shape_of_a_mesh(studio: Any) -> None:
         assert np.median(np.abs(ours - theirs)) <= 1e-5
         assert near.mean() >= 0.97, output  # silhouettes
         assert np.ptp(theirs[theirs > 1.0]) >= 0.05, output
-
-
-def test_constants_cost_nothing(studio: Any) -> None:
-    """Nodes of constants are computed before the render: a chain of them takes no operations at a hit."""
-    from shlight_blender.export import export_scene
-
-    for name, length in (("plain", 0), ("chain", 20)):
-        made = studio.material("ShaderNodeBsdfPrincipled", name=name, Roughness=0.5)
-        tree = made.node_tree
-        last = tree.nodes.new("ShaderNodeValue").outputs[0]
-        last.default_value = 0.5
-        for _ in range(length):
-            node = tree.nodes.new("ShaderNodeMath")
-            node.operation, node.inputs[1].default_value = "MULTIPLY", 1.0
-            tree.links.new(last, node.inputs[0])
-            last = node.outputs[0]
-        tree.links.new(last, tree.nodes["Principled BSDF"].inputs["Roughness"])
-        studio.plane(material=made, name=name)
-    studio.plane(material=studio.material("ShaderNodeBsdfDiffuse", name="matt"))
-    studio.area()
-    studio.camera()
-    exported = export_scene(bpy.context.evaluated_depsgraph_get())
-    assert exported.operations["chain"] == exported.operations["plain"]
-    assert "matt" not in exported.operations
-    assert exported.texture_bytes >= 0

@@ -46,13 +46,6 @@ def test_world_without_nodes_and_film(studio: Any, transparent: bool) -> None:
     np.testing.assert_allclose(corner, (0, 0, 0, 0) if transparent else (0.2, 0.4, 0.6, 1), rtol=1e-6)
 
 
-def test_world_and_lamp(studio: Any) -> None:
-    studio.still_life()
-    studio.camera()
-    studio.world((0.3, 0.3, 0.4))
-    studio.compare(error=2e-3)
-
-
 def test_the_world_of_a_view_layer(studio: Any) -> None:
     layer = bpy.context.view_layer
     if not hasattr(layer, "world_override"):

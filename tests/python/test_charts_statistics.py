@@ -5,14 +5,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import shlight
-from shlight_tools import methods
 from shlight_tools.charts import fused, lobes, measure, order_error, picture_measure, pictures, stability, which_method
 from shlight_tools.charts.lights import CLASSES, LightClass
 from shlight_tools.charts.lobe_lights import Clock, about_lobe
@@ -35,29 +33,6 @@ def test_lights_of_a_class(light_class: LightClass) -> None:
     some = lights.take(slice(0, 4))
     true = measure.truth(some, 2)  # takes only what is planar
     np.testing.assert_allclose(true, measure.coefficients(some, "exact", 2, np.float64), atol=1e-12)
-
-
-def test_new_methods_appear_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
-    caps = {"largest_order": 8, "adaptive": False, "random": False, "knows_caps": True, "knows_polygons": False}
-    real = methods.coefficient_methods()
-    new = {
-        name: SimpleNamespace(name=name, **{**caps, **changes})
-        for name, changes in (("dummy", {}), ("other", {"random": True}), ("third", {"adaptive": True}))
-    }
-    monkeypatch.setattr(methods, "coefficient_methods", lambda: real | new)
-    found = [series.label for series in measure.all_series("sphere")]
-    assert found[0] == "exact"
-    assert "reference" not in found
-    added = [label for label in found if label.partition(" ")[0].strip(",") in new]
-    assert added == ["dummy", "other, 64 samples", "other, 1024 samples", "third", "third to 0.001"]
-    assert "dummy" not in {series.label for series in measure.all_series("polygon")}
-
-    flags = {"harmonic": False, "adaptive": False, "sampled": False, "random": False, "name": "series"}
-    shading = methods.shading_methods() | {"series": SimpleNamespace(**{**flags, "harmonic": True})}
-    monkeypatch.setattr(methods, "shading_methods", lambda: shading)
-    families = {family.method: family.option for family in which_method.families()}
-    assert families["series"] == "order"
-    assert which_method.TRUTH not in families
 
 
 def test_errors_by_hand() -> None:
