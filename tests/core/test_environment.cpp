@@ -57,23 +57,6 @@ TEST(Environment, ABlackOneIsOnlyOpaque) {
     EXPECT_EQ(image.report.shadow_rays, 0);
 }
 
-/// Half of a diffuse floor's sky, by projected area, is hidden at the foot of a high wall.
-TEST(Environment, WallsHideIt) {
-    Scene scene = floor_under_sky(Bsdf::lambert(Rgb(1)));
-    Mesh wall;
-    wall.vertices = {{0, -1e4F, -1}, {0, 1e4F, -1}, {0, 1e4F, 1e4F}, {0, -1e4F, 1e4F}};
-    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
-    wall.bsdfs = {Bsdf::lambert(Rgb(0))};
-    scene.add_mesh(wall);
-    RenderSettings settings;
-    settings.shadow_rays = 64;
-    // Pixels on both sides of the wall, none on it.
-    const Image image = render_image(scene, camera_above(1), 4, 4, settings);
-    EXPECT_NEAR(image.red(0, 1), 0.5F * kSky.x, 2e-3);
-    EXPECT_NEAR(image.red(3, 2), 0.5F * kSky.x, 2e-3);
-    EXPECT_NEAR(image.red(2, 2), 0.5F * kSky.x, 2e-3);
-}
-
 /// Only objects in the direction of a narrow lobe hide the environment that it reflects.
 TEST(Environment, GlossyLobesSeeOnlyTheirOwnObstacles) {
     const Camera camera(look_at({0, -10, 10}, {0, 0, 0}), 1e-3);

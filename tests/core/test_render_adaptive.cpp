@@ -199,50 +199,6 @@ TEST(RenderAdaptive, ManyRaysOfAPixelGoInSlices) {
     EXPECT_LE(std::abs(image.alpha(0, 0) - truth), 3e-4);
 }
 
-TEST(RenderAdaptive, ProgressNeverFallsAndRefiningCanBeCancelled) {
-    const Scene scene = spread_scene();
-    std::vector<double> shares;
-    RenderSettings settings;
-    render_image(scene, camera_above(1), 64, 64, settings, [&](double share) {
-        shares.push_back(share);
-        return true;
-    });
-    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
-    EXPECT_EQ(shares.back(), 1);
-    EXPECT_EQ(std::count(shares.begin(), shares.end(), 1.0), 1);
-    EXPECT_THROW(render_image(scene, camera_above(1), 64, 64, settings, [](double share) { return share < 0.65; }),
-                 RenderCancelled);
-}
-
-/// Pictures after each pass.
-std::vector<std::vector<float>> passes_of(const RenderSettings& settings) {
-    std::vector<std::vector<float>> pictures;
-    std::uint32_t passes = 0;
-    render_image(spread_scene(), camera_above(1), 64, 64, settings, {},
-                 [&](std::span<const float> picture, const RenderReport& report) {
-                     if (report.passes > passes) {
-                         passes = report.passes;
-                         pictures.emplace_back(picture.begin(), picture.end());
-                     }
-                     return true;
-                 });
-    return pictures;
-}
-
-TEST(RenderPasses, EachIsThePictureOfARenderThatEndsThere) {
-    RenderSettings settings;
-    settings.threads = 2;
-    const auto pictures = passes_of(settings);
-    ASSERT_GT(pictures.size(), 3U);
-    EXPECT_NE(pictures[0], pictures[1]);
-    // Whoever ends the render keeps what it was shown, with any number of threads.
-    settings.threads = 1;
-    const Image ended = render_image(spread_scene(), camera_above(1), 64, 64, settings, {},
-                                     [&](auto, const RenderReport& report) { return report.passes < 2; });
-    EXPECT_EQ(ended.report.passes, 2U);
-    EXPECT_EQ(ended.values, pictures[1]);
-}
-
 TEST(RenderPasses, ATimeLimitLeavesPassesOut) {
     RenderSettings settings;
     settings.sampling.time_limit = 1e-9;

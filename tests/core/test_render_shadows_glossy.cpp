@@ -185,16 +185,6 @@ TEST(RenderShadowsGlossy, WhollyHiddenLightsAreBlack) {
     }
 }
 
-TEST(RenderShadowsGlossy, LobesHaveRaysOfTheirOwn) {
-    Reflection setup(Bsdf::ggx(0.05F, Rgb(1)), -15);
-    add_light(setup.scene, 0, 1);
-    RenderSettings settings = with_rays(16);
-    settings.sampling = PixelSampling::fixed(16);
-    const Image image = render_image(setup.scene, setup.camera, kSize, kSize, settings);
-    EXPECT_GT(image.report.shadow_rays, 16 * image.report.hits);
-    EXPECT_LE(image.report.shadow_rays, 32 * image.report.hits);
-}
-
 TEST(RenderShadowsGlossy, AHiddenPeakStaysHiddenUnderAdaptiveRays) {
     // A ball in a long reflection at a grazing view: behind it a narrow lobe's peak is hidden, its tails are not, and
     // the pixels on its shadow's edge take more camera rays with fewer shadow rays each.

@@ -92,17 +92,6 @@ TEST(RenderSources, MirrorsDoNotShowSources) {
     EXPECT_EQ(image.red(4, 4), 0.0F);
 }
 
-TEST(RenderSources, ASourceTakesOneShadowRayPerHit) {
-    RenderSettings settings;
-    settings.sampling = PixelSampling::fixed(4);
-    Scene scene;
-    scene.add_mesh(floor_mesh(5));
-    scene.add_mesh(floor_mesh(0.5, 1));
-    scene.add_point_light({0, 0, 3}, Rgb(7));
-    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, settings);
-    EXPECT_EQ(image.report.shadow_rays, image.report.hits);
-}
-
 TEST(RenderSources, ShadowsAreSharpAndCanBeSwitchedOff) {
     // A square of half size 0.5 at height 1 under a source at height 2: its shadow reaches twice as far. What is above
     // the source shades nothing.

@@ -72,5 +72,7 @@ def test_disk_light_is_disk_coefficients() -> None:
     facing, away = (disk[1:], disk[:0:-1])
     np.testing.assert_allclose(value(*facing), np.array([1, 2, 3]) * irradiance / math.pi, rtol=2e-5)
     assert not value(*away).any()
+    in_the_floor = lambda scene: scene.add_disk_light((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 2, 3))  # noqa: E731
+    assert not radiance_at_origin(in_the_floor).any()
     assert not value(*facing, diffuse=False).any()
     assert value(*facing, spread=math.pi)[0] == value(*facing)[0]
