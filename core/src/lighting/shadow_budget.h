@@ -43,6 +43,9 @@ class ShadowBudget {
     SampleRange samples_of(std::size_t light, std::size_t group, const SampleRange& samples) const;
 
   private:
+    void find_weights();
+    /// Brightness of all points under a light.
+    void find_points(const UnshadowedLight& light);
     std::uint32_t most_rays(std::size_t light, std::size_t group, const SampleRange& samples) const {
         const bool is_partly_hidden = (penumbrae_[group] & LightBits::bit(light)) != 0;
         return is_partly_hidden ? samples.shadow_rays : std::min(samples.shadow_rays, 1U);
@@ -51,8 +54,10 @@ class ShadowBudget {
     std::size_t lobe_stride_;
     const ShadingPoints* points_ = nullptr;
     std::span<const std::uint32_t> penumbrae_;
-    std::vector<float> all_;  // by group
-    std::vector<float> own_;  // lights × groups
+    std::vector<float> all_;        // by group
+    std::vector<float> own_;        // lights × groups
+    std::vector<float> of_points_;  // of one light
+    std::vector<float> weights_;    // magnitudes of ShadingPoints::weight, lobes × channels × points
 };
 
 }  // namespace shlight

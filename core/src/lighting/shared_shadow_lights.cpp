@@ -46,7 +46,7 @@ void SharedShadowLights::start(std::span<const Light> lights, std::span<const Un
     unshadowed_ = unshadowed;
     samples_ = samples;
     may_share_.clear();
-    for (const Light& light : lights) {
+    for (const Light& light : lights.subspan(begin, end - begin)) {
         // Shares are those of light that adds up; and rays to a mesh take another way.
         const bool adds = glm::all(glm::greaterThanEqual(strength_of(light), Rgb(0)));
         const bool is_mesh = std::holds_alternative<MeshLight>(light);
@@ -55,7 +55,7 @@ void SharedShadowLights::start(std::span<const Light> lights, std::span<const Un
 }
 
 bool SharedShadowLights::is_dim(std::size_t light, std::size_t pixel) const {
-    return may_share_[light] != 0 && samples_.shadow_rays > 0 && budget_->rays(light, pixel, samples_) < 1;
+    return may_share_[light - begin_] != 0 && samples_.shadow_rays > 0 && budget_->rays(light, pixel, samples_) < 1;
 }
 
 void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits) {
@@ -89,7 +89,7 @@ void SharedShadowLights::gather(std::size_t first, std::span<DimLights> pixels) 
         dim.rays = 0;
     }
     for (std::size_t i = begin_; i < end_; ++i) {
-        for (std::size_t k = 0; may_share_[i] != 0 && samples_.shadow_rays > 0 && k < pixels.size(); ++k) {
+        for (std::size_t k = 0; may_share_[i - begin_] != 0 && samples_.shadow_rays > 0 && k < pixels.size(); ++k) {
             const float own = budget_->of_group(i, first + k);
             if (!(own > 0)) {
                 continue;
@@ -181,6 +181,9 @@ void SharedShadowLights::add_unblocked(std::size_t pixel) {
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             const Rgb& weight = points_->weight(point, lobe);
+            if (weight == Rgb(0)) {
+                continue;
+            }
             Rgb sum(0);
             for (const Member& member : dim_) {
                 sum += unshadowed_[member.index][lobe * points_->size() + point];

@@ -103,7 +103,7 @@ class SharedShadowLights {
     std::span<const UnshadowedLight> unshadowed_;  // likewise
     SampleRange samples_{};
     std::size_t begin_ = 0, end_ = 0;        // likewise
-    std::vector<std::uint8_t> may_share_;    // by light
+    std::vector<std::uint8_t> may_share_;    // of these
     const ShadingPoints* points_ = nullptr;  // of the call of add()
     std::vector<PixelSamples> pixels_;
     std::vector<ShadowSample> shadow_samples_;
