@@ -142,8 +142,9 @@ def shade_spheres(
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
     With gradient also a SphereGradient, of the arrays' type: the exact derivatives of the reflected radiance, whatever
-    the tolerance of the radiance returned. Those of mirrors are 0; method and order must then be "auto". With gradient
-    "places" those by roughness are left out, which take most of the time.
+    the tolerance of the radiance returned. Where a lamp at the horizon adds little, differences of that radiance err
+    by up to 40 % of the derivative at the default tolerance, and by 0.3 % at 1e-5. Derivatives of mirrors are 0; method
+    and order must then be "auto". With gradient "places" those by roughness are left out, which take most of the time.
     """
     options: dict[str, Any] = {"samples": samples, "seed": seed, "sampling": sampling}
     settings = (phi_o, order, tolerance, threads, method, return_effort, gradient)
