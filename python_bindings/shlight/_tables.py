@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from shlight import _core
 from shlight._arrays import checked_array, checked_callable, checked_flag, checked_integer, checked_order
+from shlight.images import checked_path
 
 Doubles = NDArray[np.float64]
 Order = int | Literal["auto"]
@@ -80,12 +81,7 @@ def from_table(
 
 def read(path: str | Path, *, order: Order = "auto") -> _core.Bsdf:
     only = _only_order(order)
-    try:
-        file = Path(path)
-    except TypeError:
-        raise TypeError(f"path must be a str or a Path, got {type(path).__name__}") from None
-    if "\0" in str(file):
-        raise ValueError("path must not contain a null character")
+    file = checked_path(path)
     size = file.stat().st_size
     utia = 3 * (_UTIA_THETAS * _UTIA_PHIS) ** 2 * 8
     merl = 12 + 3 * math.prod(_MERL_SHAPE) * 8

@@ -31,13 +31,6 @@ def test_calibration_finds_the_samples_in_less_than_the_time() -> None:
     assert reference.calibrate(render, 0.01, 100000).samples(0.01) == 1
 
 
-def test_turns_alternate() -> None:
-    order = []
-    first, second = reference.alternate(lambda: order.append("a") or 1.0, lambda: order.append("b") or 2.0, 3)
-    assert order == ["a", "b"] * 3
-    assert (first, second) == ([1.0] * 3, [2.0] * 3)
-
-
 def halves_of(most: int, budget: float, per_sample: float = 0.1) -> tuple[list[Any], dict[str, Any]]:
     """Halves whose sample number i has the value i, 1000 more in the second. All but the first take thrice the time."""
 

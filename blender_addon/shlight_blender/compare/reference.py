@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -21,8 +20,6 @@ import numpy.typing as npt
 from shlight import metrics
 
 Image = npt.NDArray[np.float32]
-# A render call: does its work and returns its wall time in seconds.
-Timed = Callable[[], float]
 MOST_PROBES = 4
 PROBE_SHARE = 0.25  # of the target's time for the longest probe; a line through it sees as far as the target
 PROBE_GROWTH = 16  # from few samples one cannot see far
@@ -71,11 +68,6 @@ class SampleTime:
             return (self.measured[high] - self.measured[low]) / (high - low)
         return self.measured[high] / high
 
-    @property
-    def fixed(self) -> float:
-        """Seconds that a render takes beside its samples."""
-        return self.seconds(0)
-
     def seconds(self, samples: int) -> float:
         """Foretold wall time for this many samples."""
         return max(self.measured[self.largest] + (samples - self.largest) * self.per_sample, 0.0)
@@ -106,20 +98,6 @@ def rounds_for(seconds: float) -> int:
     if seconds < 0.5:
         return 5
     return 3 if seconds < 2.0 else 1
-
-
-def alternate(first: Timed, second: Timed, rounds: int) -> tuple[list[float], list[float]]:
-    """Times of both, run in turns, so that what else the machine does falls on both."""
-    times: tuple[list[float], list[float]] = ([], [])
-    for _ in range(rounds):
-        times[0].append(first())
-        times[1].append(second())
-    return times
-
-
-def middle(times: list[float]) -> float:
-    """The median, which one disturbed run does not move."""
-    return float(median(times))
 
 
 def render_halves(
@@ -167,6 +145,6 @@ def _next_chunk(time: SampleTime, left: int, spent: float, budget: float) -> int
         return left
     if spent > 0 and rest < SMALLEST_SHARE * budget:
         return 0
-    seconds = min(max(LARGEST_SHARE * budget, 2 * time.fixed / FIXED_SHARE), rest)
+    seconds = min(max(LARGEST_SHARE * budget, 2 * time.seconds(0) / FIXED_SHARE), rest)
     fitting = min(int(time.samples_in(seconds / 2)), GROWTH * time.largest)
     return min(max(fitting, 0 if spent > 0 else 1), left)

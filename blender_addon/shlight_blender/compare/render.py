@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import bpy
@@ -44,7 +45,7 @@ from ..running import ENGINE
 from ..worker_process import Channel, SceneError, serve
 from .measure import Image, add_measurements, largest_differences
 from .places import Finder, show_what_is_rendered
-from .reference import Request, SampleTime, alternate, calibrate, middle, render_halves, rounds_for
+from .reference import Request, SampleTime, calibrate, render_halves, rounds_for
 
 # Random seeds; no two pictures of Cycles may share one.
 SEED_SAME_TIME, SEEDS_OF_HALVES = 0, (1, 2)
@@ -132,12 +133,12 @@ class Worker:
         self._channel.stage(f"Cycles, same time: {samples} samples{again}", (2 * rounds - 1) * target)
         theirs = [self._render_same_time(samples)]
         self._take("cycles_same_time")
-        more = alternate(self._render_shlight, lambda: self._render_same_time(samples), rounds - 1)
-        ours += more[0]
-        theirs += more[1]
-        time_of.add(samples, middle(theirs))
-        figures["shlight"]["seconds"] = middle(ours)
-        figures["cycles_same_time"] = {"samples": samples, "seconds": middle(theirs), "times": theirs}
+        for _ in range(rounds - 1):
+            ours.append(self._render_shlight())
+            theirs.append(self._render_same_time(samples))
+        time_of.add(samples, median(theirs))
+        figures["shlight"]["seconds"] = median(ours)
+        figures["cycles_same_time"] = {"samples": samples, "seconds": median(theirs), "times": theirs}
         return time_of
 
     def _halves(self, figures: dict[str, Any], time_of: SampleTime) -> list[Image]:

@@ -14,18 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shlight import _core, images
+from shlight._arrays import checked_name
 from shlight.nodes.inputs import uv
 from shlight.nodes.values import Color, Vector, below, operation, right, steps
 
 INTERPOLATIONS = ("closest", "linear", "cubic")
 EXTENSIONS = ("repeat", "extend", "clip", "mirror")
 ENCODINGS = ("linear", "srgb")
-
-
-def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
-    if value not in choices:
-        raise ValueError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
-    return choices.index(value)
 
 
 def texture_pixels(
@@ -43,9 +38,9 @@ def texture_pixels(
         shows.
     Raises ValueError naming the argument.
     """
-    number = _chosen("encoding", encoding, ENCODINGS)
-    filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
-    beyond = _chosen("extension", extension, EXTENSIONS)
+    number = ENCODINGS.index(checked_name("encoding", encoding, ENCODINGS))
+    filtering = INTERPOLATIONS.index(checked_name("interpolation", interpolation, INTERPOLATIONS))
+    beyond = EXTENSIONS.index(checked_name("extension", extension, EXTENSIONS))
     if isinstance(pixels, str | os.PathLike):
         pixels = images.read_texture(pixels)
     array: NDArray[Any] = np.asarray(pixels)
@@ -96,8 +91,8 @@ def image(
     closed: the picture goes around something, so that u jumps by 1 at a seam; the footprint there goes the short way.
     Raises ValueError naming the argument.
     """
-    filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
-    beyond = _chosen("extension", extension, EXTENSIONS)
+    filtering = INTERPOLATIONS.index(checked_name("interpolation", interpolation, INTERPOLATIONS))
+    beyond = EXTENSIONS.index(checked_name("extension", extension, EXTENSIONS))
     tiled = isinstance(pixels, Mapping)
 
     def prepared(own: Any) -> Any:
