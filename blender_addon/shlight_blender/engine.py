@@ -129,6 +129,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         import shlight
 
         from .export import render_settings
+        from .export.images import TEXTURES
 
         start = time.perf_counter()
         try:
@@ -141,8 +142,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             record.last.report.extend(exported.report)
             record.last.dark = exported.dark or record.last.dark
             record.last.settings = settings
-            record.last.operations.update(exported.operations)
-            record.last.texture_bytes = exported.texture_bytes
+            record.last.operations.update(exported.meshes.operations())
+            record.last.texture_bytes = TEXTURES.size_in_bytes
             self._show(record.last.report.lines())
             self._check("Rendering")
             latest: NDArray[np.float32] | None = None
@@ -177,11 +178,10 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         record.last.statistics = result.report
         if inexact := inexact_light(record.last.statistics):
             record.last.report.add("Light", inexact, Effect.SLIGHT)
-        stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.names)
-        return denoised(result.layers, "high", settings["threads"], self._denoises) if denoises else result.layers
-
-    def _denoises(self, share: float) -> bool:
-        return self._wait("Denoising")
+        stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.meshes.names())
+        if not denoises:
+            return result.layers
+        return denoised(result.layers, "high", settings["threads"], lambda _: self._wait("Denoising"))
 
     def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
         """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""
@@ -293,7 +293,6 @@ def _views(render: Any) -> list[str]:
 
 
 def register() -> None:
-    """Adds the engine."""
     running.register()
     if not ShlightRenderEngine.is_registered:
         bpy.utils.register_class(ShlightRenderEngine)

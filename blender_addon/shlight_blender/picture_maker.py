@@ -73,7 +73,6 @@ class PictureMaker:
             self._thread.start()
 
     def end(self) -> None:
-        """Ends the thread."""
         with self._changed:
             self._ended = True
             self._number += 1

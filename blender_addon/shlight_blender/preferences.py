@@ -17,7 +17,6 @@ class SHLIGHT_Preferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     def draw(self, context: Any) -> None:
-        """Draws the panel."""
         problem = native_problem()
         column = self.layout.column()
         if not problem:
@@ -28,10 +27,8 @@ class SHLIGHT_Preferences(bpy.types.AddonPreferences):
 
 
 def register() -> None:
-    """Adds the panel."""
     bpy.utils.register_class(SHLIGHT_Preferences)
 
 
 def unregister() -> None:
-    """Removes the panel."""
     bpy.utils.unregister_class(SHLIGHT_Preferences)

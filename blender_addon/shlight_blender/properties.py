@@ -173,14 +173,12 @@ def are_registered() -> bool:
 
 
 def register() -> None:
-    """Adds the settings."""
     for settings, owner in CLASSES.items():
         bpy.utils.register_class(settings)
         owner.shlight = bpy.props.PointerProperty(type=settings)
 
 
 def unregister() -> None:
-    """Removes the settings."""
     for settings, owner in CLASSES.items():
         del owner.shlight
         bpy.utils.unregister_class(settings)

@@ -51,7 +51,6 @@ class Renders:
             return self._changed.wait_for(lambda: self._thread is None, LONGEST_WAIT)
 
     def resume(self) -> None:
-        """Lets renders run."""
         self.stopped = ""
 
 
@@ -98,7 +97,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Ends the watch."""
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)
     del bpy.types.RenderEngine.unregister

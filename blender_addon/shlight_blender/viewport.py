@@ -97,11 +97,10 @@ def _frame(context: Any, scene: Any, camera_projection: Matrix | None) -> Frame:
     low, high = np.zeros(2), np.ones(2)
     if camera_projection is not None:
         if scene.render.use_border:
-            low, high = _camera_border(scene, context.space_data.camera, camera_projection)
+            start, end = _camera_frame(scene, context.space_data.camera, camera_projection)
+            low, high = (start + share * (end - start) for share in _border(scene.render, "border"))
     elif context.space_data.use_render_border:
-        space = context.space_data
-        low = np.array([space.render_border_min_x, space.render_border_min_y])
-        high = np.array([space.render_border_max_x, space.render_border_max_y])
+        low, high = _border(context.space_data, "render_border")
     pixels = np.array([width, height])
     left, bottom = (int(c) for c in np.clip(np.floor(low * pixels), 0, pixels))
     right, top = (int(c) for c in np.clip(np.ceil(high * pixels), 0, pixels))
@@ -126,13 +125,9 @@ def _panorama_window(scene: Any, camera: Any, projection: Matrix, frame: Frame) 
     return float(start[0]), float(end[0]), float(start[1]), float(end[1])
 
 
-def _camera_border(scene: Any, camera: Any, projection: Matrix) -> tuple[Matrix, Matrix]:
-    """The lower left and upper right corner of the scene's render border, as shares of the region."""
-    low, high = _camera_frame(scene, camera, projection)
-    render = scene.render
-    least = np.array([render.border_min_x, render.border_min_y])
-    most = np.array([render.border_max_x, render.border_max_y])
-    return low + least * (high - low), low + most * (high - low)
+def _border(owner: Any, name: str) -> list[Matrix]:
+    """The lower left and upper right corner of a border, as shares of what it is drawn on."""
+    return [np.array([getattr(owner, f"{name}_{end}_{axis}") for axis in "xy"]) for end in ("min", "max")]
 
 
 class RenderedViewport:

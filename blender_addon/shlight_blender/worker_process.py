@@ -55,7 +55,6 @@ class Channel:
         self.send("known", figures)
 
     def send(self, kind: str, given: Any) -> None:
-        """Sends any message."""
         self._stream.write(json.dumps([kind, given]) + "\n")
         self._stream.flush()
 

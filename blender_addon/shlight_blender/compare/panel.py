@@ -10,7 +10,7 @@ import bpy
 from ..compat import draw_progress
 from ..names import name_of, one_line
 from ..ui.base import draw_text, panel, with_names_aside
-from ..ui.report import SHLIGHT_OT_show_place, leads_somewhere
+from ..ui.report import draw_place
 from ..worker_process import WorkerError
 from . import overlay, results
 from .job import Job, session
@@ -150,7 +150,6 @@ class SHLIGHT_OT_cancel_comparison(bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: Any) -> set[str]:
-        """Ends it."""
         session.end("its Cancel button")
         return {"FINISHED"}
 
@@ -165,7 +164,6 @@ class SHLIGHT_OT_show_comparison(bpy.types.Operator):
     image: bpy.props.StringProperty()
 
     def execute(self, context: Any) -> set[str]:
-        """Shows it."""
         results.make_images()  # what a user has removed
         if bpy.data.images.get(self.image) is None:
             self.report({"ERROR"}, f"shlight: there is no image '{self.image}'")
@@ -197,7 +195,6 @@ class SHLIGHT_OT_remove_comparison(bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: Any) -> set[str]:
-        """Removes them."""
         overlay.remove()
         results.remove()
         return {"FINISHED"}
@@ -289,11 +286,7 @@ def lines(figures: dict[str, Any]) -> list[str]:
 def _draw_place(layout: Any, context: Any, number: int, place: dict[str, Any]) -> None:
     box = layout.box().column(align=True)
     text = f"{number}  {place['place']}: {100 * place['difference']:+.0f} %"
-    if leads_somewhere(place["place"]):
-        show = box.operator(SHLIGHT_OT_show_place.bl_idname, text=text, icon="RESTRICT_SELECT_OFF")
-        show.place = place["place"]
-    else:
-        box.label(text=text)
+    draw_place(box, place["place"], text)
     for message in place["messages"]:
         draw_text(box, context, message[:1].upper() + message[1:], "INFO")
     if not place["messages"]:

@@ -48,7 +48,6 @@ HANDLERS = {
 
 
 def register() -> None:
-    """Adds all of it."""
     bpy.utils.register_class(SHLIGHT_CompareSettings)
     bpy.types.WindowManager.shlight_compare = bpy.props.PointerProperty(type=SHLIGHT_CompareSettings)
     for name, handler in HANDLERS.items():

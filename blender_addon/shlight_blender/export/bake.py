@@ -70,7 +70,8 @@ def bake_world(world: Any, scene: Any, waiting: Waiting | None = None) -> Baked 
     key = bake_key(world, scene)
     if (found := _found(key)) is not None:
         return found
-    baked = _bake(world, scene, waiting)
+    with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
+        baked = _baked(_request(Path(name), world, scene), Path(name), waiting)
     # Edits during the bake may be in the picture and not in the key.
     if baked is not None and key is not None and bake_key(world, scene) == key:
         _keep(key, baked)
@@ -111,7 +112,6 @@ class _Background:
         atexit.register(self._end)  # else the other Blender would go on
 
     def stop(self) -> None:
-        """Ends it soon."""
         self._stopped = True
 
     def _end(self) -> None:
@@ -154,11 +154,6 @@ def bake_in_background(world: Any, scene: Any, ended: Callable[[], None]) -> Bak
         raise BakeError(_background.error)
     _background.ended.append(ended)
     return None
-
-
-def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
-    with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
-        return _baked(_request(Path(name), world, scene), Path(name), waiting)
 
 
 def _request(folder: Path, world: Any, scene: Any) -> dict[str, Any]:

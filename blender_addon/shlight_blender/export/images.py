@@ -58,13 +58,15 @@ def linear_light(pixels: NDArray[Any], space: str) -> NDArray[np.float32]:
 
     Colours are divided by alpha while they are converted, as in Cycles.
     """
-    import OpenImageIO as oiio
-
     values = pixels.astype(np.float32)
     if np.issubdtype(pixels.dtype, np.integer):
         values /= np.iinfo(pixels.dtype).max
     if pixels.shape[2] == 1:
         values = np.repeat(values, 3, axis=2)
+    if space in LINEAR_SPACES:
+        return np.ascontiguousarray(values)
+    import OpenImageIO as oiio
+
     source = oiio.ImageBuf(np.ascontiguousarray(values))
     return np.asarray(_converted(source, space).get_pixels(oiio.FLOAT), dtype=np.float32)
 
@@ -251,15 +253,8 @@ def linear_pixels(image: Any) -> NDArray[np.float32] | None:
 
     Blender keeps floats as linear light, whatever their file has; bytes are in the image's colour space.
     """
-    pixels = pixels_of(image)
+    pixels = _pixels(image)
     if not pixels.size:
         return None
-    channels = pixels.shape[2]
-    rgb = pixels[..., :3] if channels >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
-    rgb = np.nan_to_num(rgb, posinf=BRIGHTEST, neginf=-BRIGHTEST)
-    if not image.is_float and channels == 4 and image.alpha_mode == "STRAIGHT":
-        rgb = rgb * pixels[..., 3:]  # before the colour space is undone, as Cycles does
-    space = image.colorspace_settings.name
-    if not image.is_float and space not in LINEAR_SPACES:
-        rgb = linear_light(rgb, space if is_known(space) else SRGB)
-    return np.ascontiguousarray(rgb, dtype=np.float32)
+    light = linear_light(pixels[..., :3], "Linear" if image.is_float else space_of(image))
+    return np.nan_to_num(light, posinf=BRIGHTEST, neginf=-BRIGHTEST)

@@ -82,6 +82,7 @@ class ExportedScene:
     """A shlight.Scene that follows a scene of Blender: `look_from` a camera first, then `update`.
 
     scene: ready for `shlight.render` after both.
+    meshes: its meshes, with their names and what their materials take.
     dark: what the report says if nothing gives light, else "".
     """
 
@@ -92,7 +93,7 @@ class ExportedScene:
         self._frame: Frame | None = None  # of a camera's picture
         self._culling: Culling | None = None
         self._surroundings = Surroundings()
-        self._meshes = SceneMeshes(self.scene)
+        self.meshes = SceneMeshes(self.scene)
         self._world = SceneWorld(self.scene)
         self._state = _State()
         self._is_lit: dict[str, bool] = {}  # by the part of the scene that gives light or none
@@ -108,24 +109,9 @@ class ExportedScene:
         return whole
 
     @property
-    def operations(self) -> dict[str, int]:
-        """The number of operations per hit of each material with a program."""
-        return self._meshes.operations()
-
-    @property
     def is_of_one_camera(self) -> bool:
         """Whether materials ask where the camera is."""
         return self._surroundings.view_is_used
-
-    @property
-    def names(self) -> dict[str, set[str]]:
-        """The names in each of `passes.CRYPTOMATTES`."""
-        return self._meshes.names()
-
-    @property
-    def texture_bytes(self) -> int:
-        """The memory of all kept textures."""
-        return TEXTURES.size_in_bytes
 
     def look_from(self, depsgraph: Any, *, frame: Frame, camera: Any = None) -> None:
         """Another camera, or the same elsewhere; arguments and errors as of `export_scene`."""
@@ -199,7 +185,7 @@ class ExportedScene:
             self._is_lit["lamps"] = False
             self._new_report("lamps")
         if walks_meshes:
-            self._meshes.begin(changes, self._surroundings, depsgraph.view_layer_eval.material_override)
+            self.meshes.begin(changes, self._surroundings, depsgraph.view_layer_eval.material_override)
             self._new_report("objects")
             self._told = set()
         for instance in depsgraph.object_instances:
@@ -212,8 +198,8 @@ class ExportedScene:
             elif walks_meshes:
                 self._add_object(instance, depsgraph.view_layer_eval)
         if walks_meshes:
-            self._is_lit["objects"] = self._meshes.finish(ask)
-            self._reports["objects"].extend(self._meshes.report)
+            self._is_lit["objects"] = self.meshes.finish(ask)
+            self._reports["objects"].extend(self.meshes.report)
 
     def _add_lamp(self, instance: Any) -> bool:
         report, instancer = self._reports["lamps"], _instancer(instance)
@@ -232,7 +218,7 @@ class ExportedScene:
                 self._told.add(key)
                 _report_object(seen, instancer, view_layer, report)
             if view_layer.use_solid:
-                self._meshes.add(instance, _to_world(instance))
+                self.meshes.add(instance, _to_world(instance))
         elif seen.type in UNSUPPORTED_TYPES and getattr(view_layer, FILTERS.get(seen.type, ""), True):
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{name_of(seen)}'", text, Effect.THING)

@@ -16,7 +16,12 @@ from ..frame import Frame
 from ..names import name_of
 from .camera import View
 
-Points = NDArray[np.float64]
+Array = NDArray[np.float64]
+
+
+def _moved(points: Array, matrix: Array) -> Array:
+    """Points (..., 3) in another frame; matrix: its first three rows, at least."""
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 @dataclass(frozen=True)
@@ -28,21 +33,20 @@ class Culling:
     margin: float | None  # beside the picture, as a share of it; None: nothing is left out for that
     distance: float | None  # [m] from the camera; likewise
 
-    def leaves_out(self, shown: Any, to_world: Points) -> bool:
+    def leaves_out(self, shown: Any, to_world: Array) -> bool:
         """Whether an object of the depsgraph is left out at `to_world`: for all reasons that are asked of it."""
         own = shown.cycles
         beside = self.margin is not None and own.use_camera_cull
         far = self.distance is not None and own.use_distance_cull
         if not beside and not far:
             return False
-        corners = np.array(shown.bound_box) @ to_world[:3, :3].T + to_world[:3, 3]
+        corners = _moved(np.array(shown.bound_box), to_world)
         return not (beside and self._is_near_picture(corners)) and not (far and self._is_near_camera(corners))
 
-    def _is_near_picture(self, corners: Points) -> bool:
+    def _is_near_picture(self, corners: Array) -> bool:
         """Corners before the near plane count as on the other side of the picture, as in Cycles."""
         margin, (near, far) = self.margin or 0.0, self.clips
-        to_camera = np.array(self.view.to_camera)
-        x, y, z = (corners @ to_camera[:, :3].T + to_camera[:, 3]).T
+        x, y, z = _moved(corners, np.array(self.view.to_camera)).T
         divisor = 1.0 if self.view.orthographic else z
         depth = (z - near) / (far - near) * (1.0 if self.view.orthographic else far)
         if (depth < -margin).all():
@@ -51,7 +55,7 @@ class Culling:
         shares = 0.5 + np.where(depth[:, None] < 0.0, -0.5, 0.5) * place
         return bool((shares.min(axis=0) < 1.0 + margin).all() and (shares.max(axis=0) > -margin).all())
 
-    def _is_near_camera(self, corners: Points) -> bool:
+    def _is_near_camera(self, corners: Array) -> bool:
         to_camera = np.array(self.view.to_camera)
         camera = -to_camera[:, :3].T @ to_camera[:, 3]
         nearest = np.clip(camera, corners.min(axis=0), corners.max(axis=0))
@@ -70,7 +74,6 @@ def culling_of(scene: Any, lens: Any, view: View) -> Culling | None:
     return Culling(view, (float(lens.clip_start), float(lens.clip_end)), margin, distance)
 
 
-Array = NDArray[np.float64]
 NEAREST = 1e-4  # distance from the camera's plane beyond which things are projected
 PAIRS = np.triu_indices(8, 1)  # of the corners of a box
 
@@ -97,8 +100,7 @@ def shares_of_picture(depsgraph: Any, view: View, frame: Frame, wanted: Containe
         }
         owned = [name for name in names if name in wanted]
         if owned and instance.show_self:
-            to_world = np.array(instance.matrix_world)
-            boxes.append(np.array(shown.bound_box) @ to_world[:3, :3].T + to_world[:3, 3])
+            boxes.append(_moved(np.array(shown.bound_box), np.array(instance.matrix_world)))
             owners.append(owned)
     total = sum(power.values())
     shares = {name: own / total for name, own in power.items()} if 0.0 < total < np.inf else {}
@@ -113,8 +115,7 @@ def _covered(boxes: Array, view: View, frame: Frame) -> Array:
     """The shares of the frame covered by rectangles around boxes with corners (n, 8, 3) in the world."""
     if view.panoramic:
         return np.ones(len(boxes))
-    to_camera = np.array(view.to_camera)
-    points = boxes @ to_camera[:, :3].T + to_camera[:, 3]
+    points = _moved(boxes, np.array(view.to_camera))
     if not view.orthographic:
         points = _in_front(points)
         points = points / points[..., 2:]
@@ -128,7 +129,7 @@ def _covered(boxes: Array, view: View, frame: Frame) -> Array:
 
 
 def _in_front(points: Array) -> Array:
-    """Points around which the part of each box in front of the camera lies, and NaN (n, 36, 3)."""
+    """Array around which the part of each box in front of the camera lies, and NaN (n, 36, 3)."""
     first, second = points[:, PAIRS[0]], points[:, PAIRS[1]]
     from_plane, to_plane = first[..., 2:] - NEAREST, second[..., 2:] - NEAREST
     cut = from_plane * to_plane < 0.0

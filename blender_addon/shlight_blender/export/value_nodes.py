@@ -169,16 +169,12 @@ def _component(inputs: NodeInputs, v: Vector) -> Value:
     return tuple(v)[index]
 
 
-def _separate_color(inputs: NodeInputs) -> Value:
-    mode = getattr(inputs.node, "mode", "RGB")
-    own = inputs.color(0)
-    return _component(inputs, _FROM_RGB[mode](own))
+def _separate(inputs: NodeInputs, mode: str = "RGB") -> Value:
+    return _component(inputs, _FROM_RGB[mode](inputs.color(0)))
 
 
-def _combine_color(inputs: NodeInputs) -> Color:
-    mode = getattr(inputs.node, "mode", "RGB")
-    own = Color(*(inputs.number(i) for i in range(3)))
-    return _TO_RGB[mode](own)
+def _combine(inputs: NodeInputs, mode: str = "RGB") -> Color:
+    return _TO_RGB[mode](Color(*(inputs.number(i) for i in range(3))))
 
 
 def _vector_rotate(inputs: NodeInputs) -> Vector:
@@ -217,12 +213,12 @@ VALUE_NODES: dict[str, ReadNode] = {
     "CURVE_RGB": _rgb_curves,
     "CURVE_VEC": _vector_curves,
     "CURVE_FLOAT": _float_curve,
-    "SEPARATE_COLOR": _separate_color,
-    "COMBINE_COLOR": _combine_color,
-    "SEPRGB": lambda inputs: _component(inputs, inputs.color(0)),
-    "COMBRGB": lambda inputs: Color(*(inputs.number(i) for i in range(3))),
-    "SEPHSV": lambda inputs: _component(inputs, hsv_from_rgb(inputs.color(0))),
-    "COMBHSV": lambda inputs: rgb_from_hsv(Vector(*(inputs.number(i) for i in range(3)))),
+    "SEPARATE_COLOR": lambda inputs: _separate(inputs, inputs.node.mode),
+    "COMBINE_COLOR": lambda inputs: _combine(inputs, inputs.node.mode),
+    "SEPRGB": _separate,
+    "COMBRGB": _combine,
+    "SEPHSV": lambda inputs: _separate(inputs, "HSV"),
+    "COMBHSV": lambda inputs: _combine(inputs, "HSV"),
     "SEPXYZ": lambda inputs: _component(inputs, inputs.vector(0)),
     "COMBXYZ": lambda inputs: Vector(*(inputs.number(i) for i in range(3))),
     "HUE_SAT": _hue_saturation,

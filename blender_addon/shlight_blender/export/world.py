@@ -15,7 +15,7 @@ from mathutils import Euler
 from numpy.typing import NDArray
 
 import shlight
-from shlight.nodes import Shader, Value
+from shlight.nodes import Shader
 from shlight.nodes.rays import Ray, color_on_ray
 from shlight.nodes.values import Varying, number, vector
 
@@ -35,10 +35,6 @@ TEXELS_AT_ONCE = 2**16
 DIFFUSE_RAY = {"Is Diffuse Ray": 1.0, "Is Reflection Ray": 1.0, "Ray Depth": 1.0, "Diffuse Depth": 1.0}
 
 
-def _light_path(inputs: NodeInputs) -> Value:
-    return number(DIFFUSE_RAY.get(inputs.output.identifier, 0.0))
-
-
 def _geometry(inputs: NodeInputs) -> Varying | Shader:
     if inputs.output.identifier == "Tangent":
         inputs.remark("'Tangent' is not supported in a world; 0 is used", Effect.LIGHT)
@@ -50,7 +46,7 @@ def _geometry(inputs: NodeInputs) -> Varying | Shader:
 LEFT_OUT = {"ATTRIBUTE", *SHADERS} - {"ADD_SHADER", "EMISSION", "MIX_SHADER"}
 WORLD_NODES: dict[str, ReadNode] = {name: read for name, read in NODES.items() if name not in LEFT_OUT} | {
     "BACKGROUND": emission,
-    "LIGHT_PATH": _light_path,
+    "LIGHT_PATH": lambda inputs: number(DIFFUSE_RAY.get(inputs.output.identifier, 0.0)),
     "NEW_GEOMETRY": _geometry,
 }
 
@@ -138,7 +134,7 @@ class SceneWorld:
         """
         self._visible = not blender_scene.render.film_transparent
         world = world_of(blender_scene, view_layer)
-        read = _black() if world is None else _read_world(world, blender_scene, report, bake)
+        read = World(np.zeros(3)) if world is None else _read_world(world, blender_scene, report, bake)
         self._group = None if world is None else passes.light_part(WORLD, name_of(world, "lightgroup"))
         radiance = read.radiance
         if radiance.min() < 0.0:
@@ -162,10 +158,6 @@ def world_of(scene: Any, view_layer: Any) -> Any:
     return world if view_layer.use_sky else None
 
 
-def _black() -> World:
-    return World(np.zeros(3))
-
-
 def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake) -> World:
     place = f"World '{name_of(world)}'"
     _report_visibility(world, place, report)
@@ -173,12 +165,12 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake
         return World(np.array(world.color, dtype=np.float64))
     output = world.node_tree.get_output_node("CYCLES")
     if output is None:
-        return _black()
+        return World(np.zeros(3))
     if origin(output.inputs["Volume"]).node is not None:
         report.add(place, "volume is not supported; left out", Effect.THING)
     source = origin(output.inputs["Surface"])
     if source.node is None:
-        return _black()
+        return World(np.zeros(3))
     picture = _plain_picture(source, TreeReader(world, place, ExportReport(), Surroundings(), NODES))
     if picture is not None:
         return picture

@@ -42,8 +42,6 @@ def open_for_farm(path: Path) -> Any:
     render = scene.render
     render.engine = ENGINE
     render.use_crop_to_border = True
-    render.use_stamp = False
-    render.use_persistent_data = False
     return scene
 
 

@@ -140,13 +140,13 @@ class SceneFile:
 
     def render(self, frame: int, view: str, box: Box | None, threads: int) -> Rendered:
         """See Source.render."""
+        from ..background import set_threads
         from .picture import render_picture
 
         root = unpacked(self.key) if self.sent else Path("/")
         check(self.files, root)
         scene = self._scene(root)
-        scene.render.threads_mode = "FIXED" if threads else "AUTO"
-        scene.render.threads = threads or scene.render.threads
+        set_threads(scene.render, threads)
         rendered = render_picture(scene, frame, view, box, self.for_display, self.messages)
         check(self.files, root)  # one that vanished meanwhile would be magenta in the picture
         return rendered

@@ -29,7 +29,6 @@ class SHLIGHT_OT_show_place(bpy.types.Operator):
     place: bpy.props.StringProperty()
 
     def execute(self, context: Any) -> set[str]:
-        """Selects it."""
         found = PLACE.fullmatch(self.place)
         kind, name, node = found.group("kind", "name", "node") if found else ("", "", None)
         if kind == "World":
@@ -70,10 +69,13 @@ def _select_node(owner: Any, name: str | None) -> None:
             tree.nodes.active = node
 
 
-def leads_somewhere(place: str) -> bool:
-    """Whether `SHLIGHT_OT_show_place` can select it."""
+def draw_place(layout: Any, place: str, text: str) -> None:
+    """A button that selects a place of the report, or its text alone where nothing can be selected."""
     found = PLACE.fullmatch(place)
-    return found is not None and found["kind"] in OBJECT_KINDS | {"Material", "World"}
+    if found is not None and found["kind"] in OBJECT_KINDS | {"Material", "World"}:
+        layout.operator(SHLIGHT_OT_show_place.bl_idname, text=text, icon="RESTRICT_SELECT_OFF").place = place
+    else:
+        layout.label(text=text, icon="BLANK1")
 
 
 @panel("SHLIGHT_RENDER_PT_report", "Report", names_aside=False)
@@ -113,10 +115,7 @@ def _draw_message(layout: Any, context: Any, message: Message) -> None:
     box = layout.box().column(align=True)
     draw_text(box, context, message.text[:1].upper() + message.text[1:], ICONS.get(message.effect, "INFO"))
     for place in message.places[:MOST_PLACES]:
-        if leads_somewhere(place):
-            box.operator(SHLIGHT_OT_show_place.bl_idname, text=place, icon="RESTRICT_SELECT_OFF").place = place
-        else:
-            box.label(text=place, icon="BLANK1")
+        draw_place(box, place, place)
     if len(message.places) > MOST_PLACES:
         box.label(text=f"and {len(message.places) - MOST_PLACES} more", icon="BLANK1")
 

@@ -30,7 +30,6 @@ class CallsAside:
         return self._channel.recv()
 
     def close(self) -> None:
-        """Ends the process."""
         self._process.kill()
         self._process.join()
         self._channel.close()
@@ -79,7 +78,6 @@ class OneProcess:
         self._tasks = [task for task in self._tasks if not tasks(task)]
 
     def close(self) -> None:
-        """Ends the process."""
         if self._aside is not None:
             self._aside.close()
             self._aside = None

@@ -53,7 +53,6 @@ def perform_on_worker(source: Source, task: Task, threads: int, own: bool) -> Re
 
 
 def perform(source: Source, task: Task, threads: int) -> Result:
-    """Renders it."""
     picture = task.picture
     rendered = source.render(picture.frame, picture.view, picture.boxes[task.number], threads)
     if picture.is_whole:

@@ -62,15 +62,12 @@ class Refraction:
 
 
 class _Listed(NamedTuple):
-    """The steps of a material, and which of their results are what."""
+    """The steps of a material, and which of their results are what: arguments of `_core.surface_shader`."""
 
     camera: ProgramBuilder
     shadow: ProgramBuilder
-    lobes: list[tuple[str | _core.Bsdf, float, int, int | None, int | None, bool]]
-    emission: int | None
-    transparency: int | None
-    aovs: list[tuple[str, int, bool]]
-    refractions: list[tuple[int, int, int, int | None, bool]]
+    surface: tuple[list[tuple[str | _core.Bsdf, float, int, int | None, int | None, bool]], int | None, int | None]
+    rest: tuple[list[tuple[str, int, bool]], list[tuple[int, int, int, int | None, bool]]]
 
 
 @dataclass(frozen=True)
@@ -186,7 +183,7 @@ class Shader:
             refractions.append((weight, alpha, ior, bent, own.reflects))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
-        return _Listed(builder, shadows, lobes, glow_result, through, aovs, refractions)
+        return _Listed(builder, shadows, (lobes, glow_result, through), (aovs, refractions))
 
     @cached_property
     def _program(self) -> _core.ShaderProgram:
@@ -194,18 +191,8 @@ class Shader:
 
     @cached_property
     def _compiled(self) -> _core.SurfaceShader:
-        listed = self._listed
-        shadow_program = listed.shadow.program()
-        return _core.surface_shader(
-            self._program,
-            listed.lobes,
-            listed.emission,
-            listed.transparency,
-            shadow_program,
-            listed.camera.attributes,
-            listed.aovs,
-            listed.refractions,
-        )
+        camera, shadow, surface, rest = self._listed
+        return _core.surface_shader(self._program, *surface, shadow.program(), camera.attributes, *rest)
 
 
 def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
