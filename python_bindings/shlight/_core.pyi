@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 from collections.abc import Callable, Mapping, Sequence
-from os import PathLike
 from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shlight import _tables
+from shlight.nodes.principled import principled as _principled
 from shlight.nodes.shader import Shader
-from shlight.nodes.values import Number, Value, Varying, Vector
+from shlight.nodes.values import Value, Vector
 from shlight.queries import Hits
 from shlight.rendering import RenderResult
 
@@ -127,50 +128,12 @@ class Bsdf:
     def ggx(roughness: Value | float, f0: Value | Vector | ArrayLike, *, ior: float | None = None) -> Bsdf | Shader: ...
     @staticmethod
     def oren_nayar(albedo: Value | Vector | ArrayLike, sigma: Value | float) -> Shader: ...
-    @staticmethod
-    def principled(
-        base_color: Varying = (0.8, 0.8, 0.8),
-        *,
-        metallic: Number = 0.0,
-        roughness: Number = 0.5,
-        ior: Number = 1.5,
-        alpha: Number = 1.0,
-        diffuse_roughness: Number = 0.0,
-        specular_ior_level: Number = 0.5,
-        specular_tint: Varying = (1.0, 1.0, 1.0),
-        coat_weight: Number = 0.0,
-        coat_roughness: Number = 0.03,
-        coat_ior: Number = 1.5,
-        coat_tint: Varying = (1.0, 1.0, 1.0),
-        coat_normal: Vector | None = None,
-        transmission_weight: Number = 0.0,
-        emission_color: Varying = (1.0, 1.0, 1.0),
-        emission_strength: Number = 0.0,
-        several_bounces: bool = False,
-        at: Vector | None = None,
-    ) -> Shader: ...
+    principled = staticmethod(_principled)
     @staticmethod
     def layer(top: Bsdf, base: Bsdf) -> Bsdf: ...
-    @staticmethod
-    def from_function(
-        f: Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike],
-        *,
-        isotropic: bool = True,
-        order: int | Literal["auto"] = "auto",
-        samples: int | None = None,
-    ) -> Bsdf: ...
-    @staticmethod
-    def from_table(
-        values: ArrayLike,
-        theta_in: ArrayLike,
-        phi_in: ArrayLike,
-        theta_out: ArrayLike,
-        phi_out: ArrayLike,
-        *,
-        order: int | Literal["auto"] = "auto",
-    ) -> Bsdf: ...
-    @staticmethod
-    def read(path: str | PathLike[str], *, order: int | Literal["auto"] = "auto") -> Bsdf: ...
+    from_function = staticmethod(_tables.from_function)
+    from_table = staticmethod(_tables.from_table)
+    read = staticmethod(_tables.read)
     def coefficients(
         self, cos_theta_o: ArrayLike, order: int, phi_o: ArrayLike | None = None
     ) -> NDArray[np.float32]: ...

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
@@ -79,7 +80,7 @@ def from_table(
     return _from_angles(table, *axes).bsdf(only)
 
 
-def read(path: str | Path, *, order: Order = "auto") -> _core.Bsdf:
+def read(path: str | os.PathLike[str], *, order: Order = "auto") -> _core.Bsdf:
     only = _only_order(order)
     file = checked_path(path)
     size = file.stat().st_size

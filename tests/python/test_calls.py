@@ -15,7 +15,7 @@ import pytest
 from scene_cases import lit_floor
 
 import shlight
-from shlight import Bsdf, images, metrics, nodes
+from shlight import Bsdf, _tables, images, metrics, nodes
 
 MATTE = Bsdf.lambert(0.5)
 CENTERS = np.tile([0.5, 0.0, 2.0], (2000, 1))
@@ -166,6 +166,15 @@ def test_signatures_are_real_ones() -> None:
     assert tolerance == shlight.DEFAULT_TOLERANCE
 
 
-def test_principled_has_the_arguments_of_its_node() -> None:
-    own, node = (inspect.signature(function).parameters for function in (Bsdf.principled, nodes.principled))
-    assert [(p.name, p.kind, p.default) for p in own.values()] == [(p.name, p.kind, p.default) for p in node.values()]
+@pytest.mark.parametrize(
+    ("method", "function"),
+    [
+        (Bsdf.principled, nodes.principled),
+        (Bsdf.from_function, _tables.from_function),
+        (Bsdf.from_table, _tables.from_table),
+        (Bsdf.read, _tables.read),
+    ],
+)
+def test_methods_have_the_arguments_of_the_functions_behind_them(method: Any, function: Any) -> None:
+    own, behind = (inspect.signature(each).parameters for each in (method, function))
+    assert [(p.name, p.kind, p.default) for p in own.values()] == [(p.name, p.kind, p.default) for p in behind.values()]
