@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 namespace shlight::testing {
 
-/// The mean of values, and its distance from a truth in standard errors.
+/// The mean of values, and its standard error.
 class Mean {
   public:
     void add(double value) {
@@ -17,16 +16,10 @@ class Mean {
     }
     double mean() const { return mean_; }
     double error() const { return std::sqrt(squares_ / (count_ * (count_ - 1.0))); }
-    /// Deviation from a truth that is known to within `slack`, in standard errors.
-    double deviation(double truth, double slack = 1e-12) const {
-        return std::max(0.0, std::abs(mean_ - truth) - slack) / std::max(error(), 1e-300);
-    }
 
   private:
     int count_ = 0;
     double mean_ = 0, squares_ = 0;
 };
-
-constexpr double kFewSigma = 5;
 
 }  // namespace shlight::testing

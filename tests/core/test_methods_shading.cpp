@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <string>
 
 #include "error_record.h"
 #include "lobe_truth.h"
@@ -25,7 +24,6 @@ using methods::Sampling;
 using testing::across_horizon;
 using testing::all_tests;
 using testing::ErrorRecord;
-using testing::kFewSigma;
 using testing::Mean;
 using testing::on_two_threads;
 using testing::RandomInput;
@@ -99,38 +97,6 @@ TEST(NumericalMethods, ShadingQuadratureOfPolygonsMatchesBruteForce) {
     });
     record.publish("shading quadrature of polygons");
     EXPECT_LE(record.largest(), 1e-8) << record.worst();
-}
-
-TEST(NumericalMethods, ShadingMonteCarloIsUnbiased) {
-    const Vertices quad = {{-0.9, 0.5, -0.3}, {0.2, 0.5, -0.2}, {0.2, 0.6, 0.9}, {-0.9, 0.6, 0.8}};
-    const Vertices concave = {{-0.9, 0.5, 1}, {-0.4, 0.1, 1}, {0.1, 0.5, 1}, {-0.4, -0.5, 1}};
-    for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.5}), LobeShape(GgxShape{0.09})}) {
-        for (const Sampling sampling : {Sampling::solid_angle, Sampling::area, Sampling::bsdf, Sampling::mis}) {
-            const auto method =
-                find_shading_method("monte_carlo").make(shape, 0.6, {.samples = 65, .sampling = sampling});
-            const auto truth = find_shading_method("quadrature").make(shape, 0.6, {});
-            const auto check = [&](const std::string& name, double expected, const auto& draw) {
-                Mean mean;
-                for (std::uint32_t seed = 0; seed < 2000; ++seed) {
-                    const methods::Reflected r = draw(seed);
-                    EXPECT_EQ(r.points, 65);
-                    mean.add(r.value);
-                }
-                EXPECT_LE(mean.deviation(expected, 1e-9), kFewSigma)
-                    << name << " " << shape.index() << " " << static_cast<int>(sampling);
-                EXPECT_GT(expected, 1e-4);
-            };
-            for (const SphericalCap& cap :
-                 {cap_about_axis({-0.8, 0.1, 0.6}, 0.5), cap_about_axis({-0.8, 0.1, 0.1}, 0.7)}) {
-                check("cap", truth->radiance(cap, 0).value, [&](auto seed) { return method->radiance(cap, seed); });
-            }
-            for (const Vertices& vertices : {quad, concave}) {
-                const methods::SeenPolygon seen(vertices);
-                check("polygon", truth->radiance(seen, 0).value,
-                      [&](auto seed) { return method->radiance(seen, seed); });
-            }
-        }
-    }
 }
 
 /// Standard error of one light, relative to its value.

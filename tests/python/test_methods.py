@@ -360,23 +360,24 @@ def test_a_lambertian_floor_has_a_closed_form() -> None:
 
 
 @pytest.mark.parametrize("sampling", ["solid_angle", "area", "bsdf", "mis"])
-def test_random_shading_is_right_and_depends_on_the_seed_only(sampling: Any) -> None:
-    axes = np.tile(AXES, (600, 1))
-    radii = np.tile(RADII, 600)
-    bsdf = Bsdf.layer(Bsdf.ggx(0.4, 0.04, ior=1.5), Bsdf.lambert([0.2, 0.4, 0.8]))
+@pytest.mark.parametrize("roughness", [0.3, 0.7])
+def test_random_shading_is_right_and_depends_on_the_seed_only(roughness: float, sampling: Any) -> None:
+    bsdf = Bsdf.layer(Bsdf.ggx(roughness, 0.04, ior=1.5), Bsdf.lambert([0.2, 0.4, 0.8]))
+    cut = [[-0.9, 0.5, -0.3], [0.2, 0.5, -0.2], [0.2, 0.6, 0.9], [-0.9, 0.6, 0.8]]
+    concave = [[-0.9, 0.5, 1], [-0.4, 0.1, 1], [0.1, 0.5, 1], [-0.4, -0.5, 1]]
+    kinds: list[tuple[Any, ...]] = [(shlight.shade_spheres, AXES, RADII)]
+    kinds.append((shlight.shade_polygons, np.array([cut, concave, QUADS[0]])))
+    for shade, *lights in kinds:
+        many = [np.tile(array, (600, *[1] * (array.ndim - 1))) for array in lights]
 
-    def compute(seed: int, threads: int) -> NDArray[Any]:
-        options: dict[str, Any] = {"method": "monte_carlo", "sampling": sampling, "samples": 16}
-        return shlight.shade_spheres(axes, radii, bsdf, 0.7, seed=seed, threads=threads, **options)
+        def compute(seed: int, threads: int, shade: Any = shade, many: Any = many) -> NDArray[Any]:
+            options: dict[str, Any] = {"method": "monte_carlo", "sampling": sampling, "samples": 16}
+            return shade(*many, bsdf, 0.7, seed=seed, threads=threads, **options)
 
-    once = compute(1, 1)
-    np.testing.assert_array_equal(compute(1, 2), once)
-    assert (compute(2, 1) != once).any()
-    expected = shlight.shade_spheres(AXES, RADII, bsdf, 0.7, method="quadrature").astype(np.float64)
-    draws = once.reshape(600, 3, 3).astype(np.float64)
-    standard_error = draws.std(axis=0, ddof=1) / np.sqrt(600)
-    assert (np.abs(draws.mean(axis=0) - expected) <= 5 * standard_error + 1e-6).all()
-    np.testing.assert_array_equal(  # polygons too
-        shlight.shade_polygons(QUADS, bsdf, 0.7, method="monte_carlo", sampling=sampling, seed=3),
-        shlight.shade_polygons(QUADS, bsdf, 0.7, method="monte_carlo", sampling=sampling, seed=3),
-    )
+        once = compute(1, 1)
+        np.testing.assert_array_equal(compute(1, 2), once)
+        assert (compute(2, 1) != once).any()
+        expected = shade(*lights, bsdf, 0.7, method="quadrature").astype(np.float64)
+        draws = once.reshape(600, 3, 3).astype(np.float64)
+        standard_error = draws.std(axis=0, ddof=1) / np.sqrt(600)
+        assert (np.abs(draws.mean(axis=0) - expected) <= 5 * standard_error + 1e-6).all()
