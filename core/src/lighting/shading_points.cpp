@@ -112,7 +112,7 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     first_z_.push_back(normal.z);
     nearness_.push_back(static_cast<float>((spread + kNormalRounding) * (spread + kNormalRounding)));
     members_.push_back({towards_viewer(hits, hit), hits.parameters(hit), narrowest, spread, 0, false, Vec3d(0),
-                        Vec3d(0), Vec3d(0), 0, 0});
+                        Vec3d(0), Vec3d(0), 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -168,16 +168,15 @@ void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> mate
 }
 
 void ShadingPoints::sort_hits() {
-    std::size_t end = 0;
+    first_hit_.assign(1, 0);
     for (Members& members : members_) {
-        members.first_hit = end;
-        end += members.count;
+        first_hit_.push_back(first_hit_.back() + members.count);
         members.count = 0;
     }
-    hits_by_point_.resize(end);
+    hits_by_point_.resize(of_hit.size());
     for (std::size_t hit = 0; hit < of_hit.size(); ++hit) {
-        Members& members = members_[of_hit[hit]];
-        hits_by_point_[members.first_hit + members.count++] = hit;
+        const std::uint32_t point = of_hit[hit];
+        hits_by_point_[first_hit_[point] + members_[point].count++] = hit;
     }
 }
 

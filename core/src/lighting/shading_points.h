@@ -28,7 +28,7 @@ class ShadingPoints {
 
     std::size_t size() const { return frame.size(); }
     /// Hits that share a point.
-    std::uint32_t hit_count(std::size_t point) const { return members_[point].count; }
+    std::uint32_t hit_count(std::size_t point) const { return first_hit_[point + 1] - first_hit_[point]; }
     const Rgb& weight(std::size_t point, std::size_t lobe) const { return lobe_weight[point * lobe_stride_ + lobe]; }
     std::span<const Rgb> weights(std::size_t point) const {
         return std::span(lobe_weight).subspan(point * lobe_stride_, lobe_stride_);
@@ -37,7 +37,7 @@ class ShadingPoints {
         return std::span(lobe_parameters).subspan(point * lobe_stride_, lobe_stride_);
     }
     std::span<const std::size_t> hits_of(std::size_t point) const {
-        return std::span(hits_by_point_).subspan(members_[point].first_hit, members_[point].count);
+        return std::span(hits_by_point_).subspan(first_hit_[point], hit_count(point));
     }
 
     std::vector<ShadingFrame> frame;
@@ -61,7 +61,6 @@ class ShadingPoints {
         bool knows_nearest;
         Vec3d position, normal, towards_viewer;
         std::uint32_t count;
-        std::size_t first_hit;  // in hits_by_point_
     };
 
     void clear();
@@ -78,6 +77,7 @@ class ShadingPoints {
     std::vector<Members> members_;
     /// For each point the normal of its first hit, and the largest squared distance of another hit's normal, in float.
     std::vector<float> first_x_, first_y_, first_z_, nearness_;
+    std::vector<std::uint32_t> first_hit_;    // of each point and of one more, in hits_by_point_
     std::vector<std::size_t> hits_by_point_;  // numbers of hits, in the order of their points
 };
 
