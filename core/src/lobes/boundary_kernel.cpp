@@ -234,12 +234,12 @@ class DirectionLanes {
     /// Adds `scale` times f·cos towards ω_i = (x, y, z), as slowly varying factors times D(h) / 4.
     HWY_INLINE void add_lobes(V<D> x, V<D> y, V<D> z, V<D> scale, std::array<V<D>, 3>& colors) const {
         const D d;
-        const auto [half, ndf] = half_vector(d, hn::Add(x, all(d, sin_o_)), y, hn::Add(z, all(d, cos_o_)), alpha2_);
-        const auto scaled = hn::IfThenElseZero(hn::Gt(z, hn::Zero(d)), hn::Mul(scale, ndf));
+        const auto at = half_vector(d, hn::Add(x, all(d, sin_o_)), y, hn::Add(z, all(d, cos_o_)), alpha2_);
+        const auto scaled = hn::IfThenElseZero(hn::Gt(z, hn::Zero(d)), hn::Mul(scale, at.quarter_ndf));
         for (const WeightedLobe& weighted : lobes_) {
             with_lobe_lanes(weighted.shape, [&](const auto& lobe) HWY_ATTR {
                 const auto view = lobe.view(d, all(d, cos_o_), all(d, lobe_parameter(weighted.shape)));
-                const auto value = hn::Mul(scaled, lobe.over_ndf(d, half, z, view));
+                const auto value = hn::Mul(scaled, lobe.over_ndf(d, at.half, z, view));
                 for (std::size_t k = 0; k < colors.size(); ++k) {
                     colors[k] = hn::MulAdd(value, all(d, weighted.weight[k]), colors[k]);
                 }
