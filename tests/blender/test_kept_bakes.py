@@ -21,11 +21,11 @@ def bakes(monkeypatch: pytest.MonkeyPatch) -> list[bake.Baked]:
     """Nothing is kept, and what is baked from now on is black; returns the list of it."""
     made: list[bake.Baked] = []
 
-    def make(world: Any, scene: Any, waiting: Any) -> bake.Baked:
+    def make(request: Any, folder: Any, waiting: Any) -> bake.Baked:
         made.append(bake.Baked(np.zeros((4, 8, 3), dtype=np.float32)))
         return made[-1]
 
-    monkeypatch.setattr(bake, "_bake", make)
+    monkeypatch.setattr(bake, "_baked", make)
     monkeypatch.setattr(bake, "kept", type(bake.kept)())
     return made
 
@@ -235,13 +235,13 @@ def test_a_world_that_is_edited_while_it_is_baked_is_not_kept(
     """A render has the evaluated world; the user's own, which is baked, may change before it is read."""
     tree = set_world(studio)
     scene = bpy.context.evaluated_depsgraph_get().scene_eval
-    make = bake._bake
+    make = bake._baked
 
     def edit(*given: Any) -> Any:
         tree.nodes["MixRGB"].inputs["Fac"].default_value = 0.75
         return make(*given)
 
-    monkeypatch.setattr(bake, "_bake", edit)
+    monkeypatch.setattr(bake, "_baked", edit)
     bake.bake_world(scene.world, scene)
     assert len(bakes) == 1
     assert not bake.kept

@@ -21,7 +21,7 @@ def test_curves_reach_the_chart_and_the_table(
     chosen: str, scene: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(picture, "QUICK_BOUNCED", ("cornell",))
-    monkeypatch.setattr(picture, "QUICK", picture.Effort(32, 2, 1.5, 1.5))
+    monkeypatch.setattr(picture, "QUICK", picture.Effort(32, 2, 1.5, 6.0))
     monkeypatch.setattr(picture, "_renderers", lambda: [Shlight])
     assert picture.main([chosen, "--quick", "--out", str(tmp_path)]) == 0
     with (tmp_path / "picture.csv").open(encoding="utf-8") as stream:
