@@ -46,11 +46,15 @@ _PASS_CHANNELS = {
 }
 _PASS_NAMES = {
     "combined": "Combined",
-    **{
-        f"{light}_{part}": own + own_part
-        for light, own in (("diffuse", "Diff"), ("glossy", "Gloss"), ("transmission", "Trans"))
-        for part, own_part in (("direct", "Dir"), ("indirect", "Ind"), ("color", "Col"))
-    },
+    "diffuse_direct": "DiffDir",
+    "diffuse_indirect": "DiffInd",
+    "diffuse_color": "DiffCol",
+    "glossy_direct": "GlossDir",
+    "glossy_indirect": "GlossInd",
+    "glossy_color": "GlossCol",
+    "transmission_direct": "TransDir",
+    "transmission_indirect": "TransInd",
+    "transmission_color": "TransCol",
     "emission": "Emit",
     "environment": "Env",
     "denoising_albedo": "Denoising Albedo",
