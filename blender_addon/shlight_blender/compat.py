@@ -52,6 +52,8 @@ PRINCIPLED_UNSUPPORTED = (
     if IS_BLENDER_4
     else {"Subsurface": 0.0, "Anisotropic": 0.0, "Clearcoat": 0.0, "Sheen": 0.0}
 )
+# The definition of a Voronoi Texture, as `nodes.voronoi` numbers them.
+CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5
 # Faces without material have a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8.
 DEFAULT_IS_PRINCIPLED = VERSION >= (5, 0, 0)
 # An object's own empty slot is without material, or has that of the object's data.

@@ -53,7 +53,7 @@ class Case:
 
 def cases() -> list[Case]:
     """All nodes with all their modes."""
-    return [*mathematics(), *colors(), *vectors(), *places()]
+    return [*mathematics(), *colors(), *vectors(), *cells(), *places()]
 
 
 def choices(node: str, name: str) -> list[str]:
@@ -184,6 +184,30 @@ def vectors() -> list[Case]:
     for space in choices("ShaderNodeNormalMap", "space"):
         properties = {"space": space, "uv_map": "UVMap"}
         made.append(Case("ShaderNodeNormalMap", {"Strength": "w", "Color": "c"}, 0, properties, tolerance=2e-5))
+    return made
+
+
+def cells() -> list[Case]:
+    kind = "ShaderNodeTexVoronoi"
+    made = []
+    inputs: dict[str | int, Any] = {"Vector": "a", "W": "x", "Scale": "w", "Randomness": "t"}
+    has_octaves = "normalize" in bpy.types.ShaderNodeTexVoronoi.bl_rna.properties
+    octaves = {"Detail": 2.4, "Roughness": "t", "Lacunarity": "p1"} if has_octaves else {}
+    for dimensions, feature in itertools.product("1234", choices(kind, "feature")):
+        properties = {"voronoi_dimensions": f"{dimensions}D", "feature": feature}
+        distance = "Radius" if feature == "N_SPHERE_RADIUS" else "Distance"
+        wide = {**inputs, "Smoothness": "t"} if feature == "SMOOTH_F1" else inputs
+        outputs = ["Color", *(["Position"] if dimensions != "1" else []), *(["W"] if dimensions in "14" else [])]
+        for output in [distance, *(outputs if feature in ("F1", "F2", "SMOOTH_F1") else [])]:
+            made.append(Case(kind, wide, output, properties))
+            if has_octaves and output != "Radius":
+                made.append(Case(kind, {**wide, **octaves}, output, {**properties, "normalize": output != "Color"}))
+        for metric in choices(kind, "distance") if "F" in feature else []:
+            own = {**wide, **({"Exponent": "w"} if metric == "MINKOWSKI" else {})}
+            made.append(Case(kind, own, distance, {**properties, "distance": metric}))
+    none: dict[str | int, Any] = {**inputs, "Smoothness": 0.0}
+    made.append(Case(kind, none, "Distance", {"feature": "SMOOTH_F1"}))
+    made.append(Case(kind, {**inputs, "Exponent": 0.25, "Randomness": 1.0}, "Distance", {"distance": "MINKOWSKI"}))
     return made
 
 

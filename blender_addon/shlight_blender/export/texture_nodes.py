@@ -15,6 +15,7 @@ from shlight.nodes.values import Number, clamp, dot, equal, maximum, normalize, 
 
 from ..names import name_of
 from ..report import Effect
+from .cell_nodes import CELL_NODES
 from .images import MISSING, TextureUse, associates_alpha, datablock_texture, file_texture, has_plain_file, is_known
 from .mesh_attributes import GENERATED
 from .nodes import Expression, NodeInputs, ReadNode
@@ -264,4 +265,5 @@ TEXTURE_NODES: dict[str, ReadNode] = {
     "TEX_GRADIENT": _gradient,
     "TEX_WHITE_NOISE": _white_noise,
     "BLACKBODY": _blackbody,
+    **CELL_NODES,
 }

@@ -51,8 +51,10 @@ struct ShaderInput {
 struct ShaderOperation {
     std::string_view name;
     std::size_t argument_count = 0, result_count = 0;
-    /// Whether the step's `parameter` is the index of a table or an image; otherwise it must be 0.
-    enum class Parameter : std::uint8_t { none, table, image } parameter{};
+    /// Whether the step's `parameter` is the index of a table or an image, or a number below mode_count, which chooses
+    /// what the operation does; otherwise it must be 0.
+    enum class Parameter : std::uint8_t { none, table, image, mode } parameter{};
+    std::uint32_t mode_count = 0;
 };
 
 /// All operations except constants and inputs. A step refers to its operation by index.

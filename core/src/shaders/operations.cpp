@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
+#include "shaders/hash_kernel.h"
 #include "shaders/image_texture.h"
+#include "shaders/voronoi_kernel.h"
 
 namespace shlight {
 namespace {
@@ -44,51 +45,6 @@ float larger(float a, float b) {
 }
 float smaller(float a, float b) {
     return a < b || std::isnan(b) ? a : b;
-}
-
-std::uint32_t rotated(std::uint32_t x, int by) {
-    return std::rotl(x, by);
-}
-
-/// Bob Jenkins's final mixing of three words (lookup3.c, public domain).
-std::uint32_t mixed(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    c = (c ^ b) - rotated(b, 14);
-    a = (a ^ c) - rotated(c, 11);
-    b = (b ^ a) - rotated(a, 25);
-    c = (c ^ b) - rotated(b, 16);
-    a = (a ^ c) - rotated(c, 4);
-    b = (b ^ a) - rotated(a, 14);
-    return (c ^ b) - rotated(b, 24);
-}
-
-/// Jenkins's mixing of three words before three more are added.
-void stir(std::uint32_t& a, std::uint32_t& b, std::uint32_t& c) {
-    a = (a - c) ^ rotated(c, 4);
-    c += b;
-    b = (b - a) ^ rotated(a, 6);
-    a += c;
-    c = (c - b) ^ rotated(b, 8);
-    b += a;
-    a = (a - c) ^ rotated(c, 16);
-    c += b;
-    b = (b - a) ^ rotated(a, 19);
-    a += c;
-    c = (c - b) ^ rotated(b, 4);
-    b += a;
-}
-
-/// Hash of the bits of 1 … 4 floats, as a number 0 … 1.
-template <std::size_t kCount>
-float hash_to_float(const std::array<float, kCount>& key) {
-    const auto start = static_cast<std::uint32_t>(0xDEADBEEFU + (kCount << 2U) + 13);
-    std::array<std::uint32_t, 3> state = {start, start, start};
-    for (std::size_t i = 0; i < kCount; ++i) {
-        if (i == 3) {
-            stir(state[0], state[1], state[2]);
-        }
-        state[i % 3] += std::bit_cast<std::uint32_t>(key[i]);
-    }
-    return static_cast<float>(mixed(state[0], state[1], state[2])) / static_cast<float>(0xFFFFFFFFU);
 }
 
 /// The table entries around a coordinate 0 … 1, and the weight of the second.
@@ -190,23 +146,18 @@ constexpr std::array kOperations = {
     elementwise<1, [](float a) { return std::sinh(a); }>("sinh"),
     elementwise<1, [](float a) { return std::cosh(a); }>("cosh"),
     elementwise<1, [](float a) { return std::tanh(a); }>("tanh"),
-    elementwise<1, [](float a) { return hash_to_float(std::array{a}); }>("hash1"),
-    elementwise<2,
-                [](float a, float b) {
-                    return hash_to_float(std::array{a, b});
-                }>("hash2"),
-    elementwise<3,
-                [](float a, float b, float c) {
-                    return hash_to_float(std::array{a, b, c});
-                }>("hash3"),
-    elementwise<4,
-                [](float a, float b, float c, float d) {
-                    return hash_to_float(std::array{a, b, c, d});
-                }>("hash4"),
+    Operation{{"hash1", 1, 1, Parameter::none}, &hash<1>},
+    Operation{{"hash2", 2, 1, Parameter::none}, &hash<2>},
+    Operation{{"hash3", 3, 1, Parameter::none}, &hash<3>},
+    Operation{{"hash4", 4, 1, Parameter::none}, &hash<4>},
     Operation{{"table1", 1, 1, Parameter::table}, &look_up<1>},
     Operation{{"table2", 2, 1, Parameter::table}, &look_up<2>},
     Operation{{"table3", 3, 1, Parameter::table}, &look_up<3>},
     Operation{{"image", 6, 4, Parameter::image}, &sample_image},
+    Operation{{"voronoi1", 7, 5, Parameter::mode, kVoronoiModes}, &voronoi<1>},
+    Operation{{"voronoi2", 8, 6, Parameter::mode, kVoronoiModes}, &voronoi<2>},
+    Operation{{"voronoi3", 9, 7, Parameter::mode, kVoronoiModes}, &voronoi<3>},
+    Operation{{"voronoi4", 10, 8, Parameter::mode, kVoronoiModes}, &voronoi<4>},
 };
 
 }  // namespace

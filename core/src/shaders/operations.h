@@ -4,19 +4,22 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "shlight/shader_program.h"
 
 namespace shlight {
 
-/// Arguments and results of one step over some lanes.
+/// Arguments and results of one step over some lanes. A row of them may be read and written up to the next multiple of
+/// 16 lanes.
 struct OperationLanes {
     const float* const* arguments;
     float* const* results;
     std::size_t count;
     const ShaderTable* table;
     const ImageTexture* image;
+    std::uint32_t mode;
 };
 
 /// Loops in the order of shader_operations().

@@ -19,8 +19,9 @@ using Parameter = ShaderOperation::Parameter;
 
 /// Number of lanes evaluated at a time; the values of a long program then stay in the cache.
 constexpr std::size_t kLanes = 128;
+static_assert(kLanes % 16 == 0);
 constexpr int kPlaces = 3;
-constexpr std::size_t kMostArguments = 8, kMostResults = 4;
+constexpr std::size_t kMostArguments = 16, kMostResults = 8;
 
 const ShaderOperation& operation_of(const ShaderStep& step) {
     return shader_operations()[step.operation];
@@ -63,6 +64,9 @@ void check_operation(const ShaderStep& step, std::uint32_t values, std::span<con
     }
     if (operation.parameter == Parameter::image && step.parameter >= images) {
         reject("steps: there is no image " + std::to_string(step.parameter));
+    }
+    if (operation.parameter == Parameter::mode && step.parameter >= operation.mode_count) {
+        reject("steps: " + name + " has no mode " + std::to_string(step.parameter));
     }
     if (operation.parameter == Parameter::table &&
         (step.parameter >= tables.size() || tables[step.parameter].sizes.size() != operation.argument_count)) {
@@ -174,7 +178,8 @@ void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const
                         std::size_t first, std::size_t count, bool neighbours, float* registers) const {
     // Values that are computed at one place only are the same at the others.
     const auto at = [&](std::uint32_t value, int place) {
-        const std::size_t row = values_[value].slot * kPlaces + (values_[value].everywhere ? place : 0);
+        const std::size_t row =
+            values_[value].slot * kPlaces + (values_[value].everywhere ? static_cast<std::size_t>(place) : 0);
         return registers + row * kLanes;
     };
     if (is_difference(step)) {
@@ -204,7 +209,7 @@ void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const
             const bool has_image = operation.parameter == Parameter::image;
             operation_loops()[step.operation]({arguments.data(), results.data(), count,
                                                has_table ? &tables_[step.parameter] : nullptr,
-                                               has_image ? images_[step.parameter].get() : nullptr});
+                                               has_image ? images_[step.parameter].get() : nullptr, step.parameter});
         }
     }
 }

@@ -5,6 +5,7 @@ What these functions return stands where a constant stood: `Bsdf.lambert(nodes.i
 """
 
 from shlight.nodes import colors, inputs, mathematics, rays, values
+from shlight.nodes.cells import Voronoi, voronoi
 from shlight.nodes.colors import mix_color
 from shlight.nodes.inputs import (
     attribute,
@@ -37,6 +38,7 @@ __all__ = [
     "Shader",
     "Value",
     "Vector",
+    "Voronoi",
     "attribute",
     "backfacing",
     "barycentric",
@@ -77,4 +79,5 @@ __all__ = [
     "transparent",
     "uv",
     "values",
+    "voronoi",
 ]

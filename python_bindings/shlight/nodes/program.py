@@ -83,8 +83,8 @@ class ProgramBuilder:
         return (OPERATION, 0.0, number, self._resource(step.data), arguments), results
 
     def _resource(self, data: Any) -> int:
-        if data is None:
-            return 0
+        if data is None or isinstance(data, int):  # no parameter, or a mode
+            return data or 0
         if id(data) not in self._resources:
             if isinstance(data, Table):
                 self._resources[id(data)] = len(self._tables)

@@ -23,8 +23,8 @@ LARGEST_COLOR, LARGEST_RADIANCE = 1e10, 1e15  # docs/conventions.md
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Step:
-    """A constant, an input or an operation; `data` is the constant, or (source, index or name, component), or a table
-    or image."""
+    """A constant, an input or an operation; `data` is the constant, or (source, index or name, component), or a table,
+    image or mode."""
 
     name: str
     arguments: tuple[Value, ...] = ()

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""Textures of cells: the points of a grid, one at random in each of its cells, and which of them are near."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from shlight._arrays import checked_flag, checked_name
+from shlight.nodes.inputs import position
+from shlight.nodes.values import Color, Number, Value, Vector, number, steps, vector
+
+FEATURES = ("f1", "f2", "smooth_f1", "distance_to_edge", "n_sphere_radius")
+METRICS = ("euclidean", "manhattan", "chebychev", "minkowski")
+
+
+class Voronoi(NamedTuple):
+    """The result of `voronoi`; its color, position and w are 0 for "distance_to_edge" and "n_sphere_radius"."""
+
+    distance: Value
+    color: Color
+    position: Vector
+    w: Value
+
+
+def voronoi(
+    place: Vector | None = None,
+    w: Number = 0.0,
+    *,
+    dimensions: int = 3,
+    scale: Number = 5.0,
+    feature: str = "f1",
+    metric: str = "euclidean",
+    detail: Number = 0.0,
+    roughness: Number = 0.5,
+    lacunarity: Number = 2.0,
+    smoothness: Number = 1.0,
+    exponent: Number = 0.5,
+    randomness: Number = 1.0,
+    normalize: bool = False,
+    definition: int = 5,
+) -> Voronoi:
+    """Cells around points (Worley 1996, A Cellular Texture Basis Function), as Blender's Voronoi Texture has them.
+
+    place, w: where it is looked up: one dimension is w, two are x and y of the place, three are the place, four the
+        place and w; None: `position()`. Times `scale`, each unit cell has a point.
+    feature: "f1": the nearest point; "f2": the second nearest; "smooth_f1": a mean of near points, whose width is
+        smoothness, 0 … 1; "distance_to_edge": how far the next edge between two cells is; "n_sphere_radius": half the
+        distance from the nearest point to the one nearest to it.
+    metric: of the first three, "euclidean", "manhattan", "chebychev", or "minkowski" of this exponent.
+    detail, roughness, lacunarity: number of further octaves, 0 … 15, their amplitudes and their scales, each relative
+        to the one before; not of "n_sphere_radius".
+    randomness: 0: points are the corners of a grid; 1: anywhere in its cells.
+    normalize: distances and colours are divided by the most that they can be.
+    definition: as in Blender 3.4 (without octaves), or as of 4 or of 5.
+    Raises ValueError naming the argument.
+    """
+    features = FEATURES.index(checked_name("feature", feature, FEATURES))
+    metrics = METRICS.index(checked_name("metric", metric, METRICS))
+    if dimensions not in (1, 2, 3, 4):
+        raise ValueError(f"dimensions must be 1, 2, 3 or 4, got {dimensions!r}")
+    if definition not in (3, 4, 5):
+        raise ValueError(f"definition must be 3, 4 or 5, got {definition!r}")
+    where = position() if place is None else vector(place, "place")
+    along = [number(w, "w")] if dimensions in (1, 4) else []
+    chosen = [*([*where][:dimensions] if dimensions > 1 else []), *along]
+    size = number(scale, "scale")
+    settings = {
+        "detail": detail,
+        "roughness": roughness,
+        "lacunarity": lacunarity,
+        "smoothness": smoothness,
+        "exponent": exponent,
+        "randomness": randomness,
+    }
+    distance, r, g, b, *point = steps(
+        f"voronoi{dimensions}",
+        *(c * size for c in chosen),
+        *(number(value, name) for name, value in settings.items()),
+        data=features + 5 * (metrics + 4 * (int(definition) - 3 + 3 * checked_flag("normalize", normalize))),
+    )
+    placed = [c / size for c in point]
+    last = placed.pop() if along else number(0.0)
+    x, y, z = [*placed, *[number(0.0)] * (3 - len(placed))]
+    return Voronoi(distance, Color(r, g, b), Vector(x, y, z), last)
