@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
-from shlight_blender.export.texture_nodes import blackbody_rgb
+from shlight import nodes
 
 
 def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:
@@ -181,13 +181,17 @@ def test_blackbody_over_its_whole_range() -> None:
     if not hasattr(lamp, "use_temperature"):
         pytest.skip("lamps of this version of Blender have no temperature")
     lamp.use_temperature = True
+
+    def color(kelvin: float) -> Any:
+        return np.array(nodes.blackbody(kelvin).constant)
+
     worst = 0.0
     for temperature in [*range(800, 12001, 50), 12500]:
         lamp.temperature = temperature
         expected = np.array(lamp.temperature_color)
-        worst = max(worst, float(np.abs(blackbody_rgb(temperature) - expected).max() / expected.max()))
+        worst = max(worst, float(np.abs(color(temperature) - expected).max() / expected.max()))
     assert worst <= 2e-3
-    np.testing.assert_allclose(blackbody_rgb(100.0), blackbody_rgb(800.0))
+    np.testing.assert_allclose(color(100.0), color(800.0))
     bpy.data.lights.remove(lamp)
 
 

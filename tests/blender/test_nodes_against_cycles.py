@@ -31,6 +31,8 @@ NUMBERS = {
     "s": (-0.5, 1.5),
     "w": (0.3, 3.0),
     "p1": (1.05, 2.5),
+    "kelvin": (600.0, 13000.0),
+    "nm": (370.0, 800.0),
 }
 VECTORS = {"a": (-2.0, 2.0), "b": (-2.0, 2.0), "c": (0.0, 1.0), "d": (0.0, 1.0), "e": (-0.5, 2.0), "p": (0.3, 3.0)}
 
@@ -53,7 +55,7 @@ class Case:
 
 def cases() -> list[Case]:
     """All nodes with all their modes."""
-    return [*mathematics(), *colors(), *vectors(), *cells(), *places()]
+    return [*mathematics(), *colors(), *vectors(), *cells(), *patterns(), *places()]
 
 
 def choices(node: str, name: str) -> list[str]:
@@ -115,6 +117,8 @@ def colors() -> list[Case]:
         Case("ShaderNodeInvert", {"Color": "e", "Fac": "t"}),
         Case("ShaderNodeRGBToBW", {"Color": "e"}, tolerance=1e-4),
         Case("ShaderNodeBlackbody", {"Temperature": 3456.0}, tolerance=1e-3),
+        Case("ShaderNodeBlackbody", {"Temperature": "kelvin"}, tolerance=2e-3),
+        Case("ShaderNodeWavelength", {"Wavelength": "nm"}, tolerance=2e-4),
         Case("ShaderNodeValToRGB", {"Fac": "s"}, "Color", {}, ramp("LINEAR")),
         Case("ShaderNodeValToRGB", {"Fac": "s"}, "Color", {}, ramp("EASE")),
         Case("ShaderNodeValToRGB", {"Fac": "s"}, "Color", {}, ramp("CONSTANT")),
@@ -208,6 +212,20 @@ def cells() -> list[Case]:
     none: dict[str | int, Any] = {**inputs, "Smoothness": 0.0}
     made.append(Case(kind, none, "Distance", {"feature": "SMOOTH_F1"}))
     made.append(Case(kind, {**inputs, "Exponent": 0.25, "Randomness": 1.0}, "Distance", {"distance": "MINKOWSKI"}))
+    return made
+
+
+def patterns() -> list[Case]:
+    bricks: dict[str | int, Any] = {"Vector": "a", "Color1": "c", "Color2": "d", "Mortar": "e", "Scale": 3.0}
+    made = [Case("ShaderNodeTexBrick", bricks, output) for output in ("Color", "Fac")]
+    bricks |= {"Bias": "s", "Mortar Size": "t", "Mortar Smooth": "t", "Brick Width": "w", "Row Height": "t"}
+    rows = {"offset": 0.3, "offset_frequency": 3, "squash": 1.7, "squash_frequency": 2}
+    made += [Case("ShaderNodeTexBrick", bricks, output, rows) for output in ("Color", "Fac")]
+    made.append(Case("ShaderNodeTexBrick", {**bricks, "Mortar Smooth": 0.0}, "Fac", rows))
+    for depth in range(11):
+        properties = {"turbulence_depth": depth}
+        made.append(Case("ShaderNodeTexMagic", {"Vector": "a", "Scale": "w", "Distortion": "y"}, 0, properties))
+    made.append(Case("ShaderNodeTexMagic", {"Vector": "a", "Distortion": 0.0}, "Fac"))
     return made
 
 

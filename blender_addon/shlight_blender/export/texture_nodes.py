@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes of textures: which picture is looked up, and where; patterns; and the colour of a black body."""
+"""Nodes of textures: which picture is looked up, and where; patterns; and the colours of light."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from shlight import nodes
 from shlight.nodes import Color, Value, Vector
@@ -19,27 +16,7 @@ from .cell_nodes import CELL_NODES
 from .images import MISSING, TextureUse, associates_alpha, datablock_texture, file_texture, has_plain_file, is_known
 from .mesh_attributes import GENERATED
 from .nodes import Expression, NodeInputs, ReadNode
-
-COOLEST, HOTTEST = 800.0, 12000.0  # [K], outside of which Cycles' colour is constant
-# Linear Rec. 709 of luminance 1 as polynomials in ln(T / 3000 K): Planck's law over the CIE 1931 colour matching
-# functions, within 1e-4 of the brightest channel. What Cycles has fitted to it differs by at most 0.2 %.
-BLACKBODY = (
-    (1.770077, 0.844492, 0.271730),
-    (-1.465398, 0.354444, 0.805948),
-    (0.852723, -0.294940, 0.409782),
-    (-0.237564, 0.087909, -0.171040),
-    (-0.006027, 0.013412, -0.115139),
-    (0.043979, -0.017442, 0.043237),
-    (-0.022332, 0.005084, 0.015429),
-    (0.003773, -0.000491, -0.006254),
-)
-
-
-def blackbody_rgb(temperature: float) -> NDArray[np.float64]:
-    """Linear Rec. 709 colour (3,) of a black body at `temperature` [K]; what lies outside the gamut is clipped at 0."""
-    kelvin = min(max(temperature, COOLEST), HOTTEST)
-    return np.maximum(np.log(kelvin / 3000.0) ** np.arange(len(BLACKBODY)) @ np.array(BLACKBODY), 0.0)
-
+from .pattern_nodes import PATTERN_NODES
 
 INTERPOLATIONS = {"Closest": "closest", "Linear": "linear", "Cubic": "cubic", "Smart": "cubic"}
 EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
@@ -201,14 +178,6 @@ def _box_weights(normal: Vector, blend: float) -> tuple[Value, Value, Value]:
     return result[0], result[1], result[2]
 
 
-def _blackbody(inputs: NodeInputs) -> Expression:
-    constant = inputs.number("Temperature").constant
-    if constant is None:
-        inputs.remark("a temperature that varies is not supported; 6500 K is used")
-        constant = 6500.0
-    return Color(*blackbody_rgb(constant))
-
-
 def _checker(inputs: NodeInputs) -> Expression:
     place = inputs.vector_or("Vector", nodes.attribute(GENERATED))
     floors = [
@@ -264,6 +233,8 @@ TEXTURE_NODES: dict[str, ReadNode] = {
     "TEX_CHECKER": _checker,
     "TEX_GRADIENT": _gradient,
     "TEX_WHITE_NOISE": _white_noise,
-    "BLACKBODY": _blackbody,
+    "BLACKBODY": lambda inputs: nodes.blackbody(inputs.number("Temperature")),
+    "WAVELENGTH": lambda inputs: nodes.wavelength(inputs.number("Wavelength")),
     **CELL_NODES,
+    **PATTERN_NODES,
 }

@@ -47,6 +47,18 @@ float smaller(float a, float b) {
     return a < b || std::isnan(b) ? a : b;
 }
 
+/// A number 0 … 1 of a brick by a polynomial of its row and its place in it, as integers that wrap around.
+float brick_noise(float row, float brick) {
+    const auto integer = [](float x) {
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(larger(x, -2e9F), -2e9F, 2e9F)));
+    };
+    std::uint32_t n = (integer(row) << 16U) + (integer(brick) & 0xFFFFU);
+    n = (n + 1013) & 0x7FFFFFFFU;
+    n ^= n >> 13U;
+    const std::uint32_t mixed = n * (n * n * 60493 + 19990303) + 1376312589;
+    return static_cast<float>(mixed & 0x7FFFFFFFU) * 0x1p-31F;
+}
+
 /// The table entries around a coordinate 0 … 1, and the weight of the second.
 struct Interval {
     std::size_t low, high;
@@ -150,6 +162,7 @@ constexpr std::array kOperations = {
     Operation{{"hash2", 2, 1, Parameter::none}, &hash<2>},
     Operation{{"hash3", 3, 1, Parameter::none}, &hash<3>},
     Operation{{"hash4", 4, 1, Parameter::none}, &hash<4>},
+    elementwise<2, brick_noise>("brick_noise"),
     Operation{{"table1", 1, 1, Parameter::table}, &look_up<1>},
     Operation{{"table2", 2, 1, Parameter::table}, &look_up<2>},
     Operation{{"table3", 3, 1, Parameter::table}, &look_up<3>},

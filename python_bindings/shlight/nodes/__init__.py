@@ -20,6 +20,7 @@ from shlight.nodes.inputs import (
 )
 from shlight.nodes.mathematics import map_range, mapping
 from shlight.nodes.normals import bump, normal_map
+from shlight.nodes.patterns import Bricks, bricks, magic
 from shlight.nodes.principled import (
     glass,
     glossy,
@@ -30,10 +31,12 @@ from shlight.nodes.principled import (
     rising_lobes,
 )
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, scaled, translucent, transparent
+from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector, clamp, equal, maximum, minimum, select, sqrt
 
 __all__ = [
+    "Bricks",
     "Color",
     "Shader",
     "Value",
@@ -42,6 +45,8 @@ __all__ = [
     "attribute",
     "backfacing",
     "barycentric",
+    "blackbody",
+    "bricks",
     "bump",
     "clamp",
     "colors",
@@ -54,6 +59,7 @@ __all__ = [
     "image",
     "inputs",
     "lambert",
+    "magic",
     "map_range",
     "mapping",
     "mathematics",
@@ -80,4 +86,5 @@ __all__ = [
     "uv",
     "values",
     "voronoi",
+    "wavelength",
 ]
