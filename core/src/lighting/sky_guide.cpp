@@ -16,7 +16,7 @@ namespace {
 constexpr float kUnguided = 0.1F;
 /// Visible share of what could light a surface from which on it needs no guide.
 constexpr float kOpen = 1.0F / 3;
-/// Rays from a place into each block.
+/// Rays from a place into each block; after the first only where it, or one beside it, was found open.
 constexpr std::uint32_t kRaysOfBlock = 2;
 /// A block beside an open one is taken to be as open as this: it may be, from another place nearby.
 constexpr float kBeside = 0.3F;
@@ -47,6 +47,14 @@ SkyGuide::SkyGuide(const Environment& environment, const SceneRays& rays, std::u
         middles_[1][block] = way.y;
         middles_[2][block] = way.z;
     }
+    for (std::uint32_t i = 0; i < kWays; ++i) {
+        const SobolSequence points(i);
+        for (std::uint32_t ray = 0; ray < kBlocks * kRaysOfBlock; ++ray) {
+            const std::size_t block = ray / kRaysOfBlock;
+            const glm::dvec2 point = points.point(ray);
+            ways_[i].emplace_back(blocks_.light(block) > 0 ? blocks_.sample(block, point.x, point.y) : Vec3d(0));
+        }
+    }
 }
 
 double SkyGuide::spacing(const Vec3d& position) const {
@@ -61,23 +69,27 @@ const SkyGuide::Shares& SkyGuide::openness(const Place& place) const {
     if (const auto known = open_.find(place); known != open_.end()) {
         return known->second;
     }
-    std::vector<Ray> rays;
-    std::vector<std::size_t> blocks;
-    const SobolSequence points(static_cast<std::uint32_t>(PlaceHash()(place)));
-    for (std::uint32_t i = 0; i < kBlocks * kRaysOfBlock; ++i) {
-        if (const std::size_t block = i / kRaysOfBlock; blocks_.light(block) > 0) {
-            const glm::dvec2 point = points.point(i);
-            rays.push_back({Vec3f(position_of(place)), 0, Vec3f(blocks_.sample(block, point.x, point.y))});
-            blocks.push_back(block);
-        }
-    }
-    std::vector<Rgb> visible(rays.size());
-    rays_->visibility(rays, transparent_bounces_, visible);
+    const Vec3f origin(position_of(place));
+    const std::vector<Vec3f>& ways = ways_[PlaceHash()(place) % kWays];
     Shares open{};
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        open[blocks[i]] += glm::dot(visible[i], Rgb(1.0F / (3 * kRaysOfBlock)));
+    Shares wide{};
+    for (std::size_t round = 0; round < kRaysOfBlock; ++round) {
+        std::vector<Ray> rays;
+        std::vector<std::size_t> blocks;
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            if (blocks_.light(block) > 0 && (round == 0 || wide[block] > 0)) {
+                rays.push_back({origin, 0, ways[block * kRaysOfBlock + round]});
+                blocks.push_back(block);
+            }
+        }
+        std::vector<Rgb> visible(rays.size());
+        rays_->visibility(rays, transparent_bounces_, visible);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            open[blocks[i]] += glm::dot(visible[i], Rgb(1.0F / (3 * kRaysOfBlock)));
+        }
+        wide = widened(open);
     }
-    return open_.emplace(place, widened(open)).first->second;
+    return open_.emplace(place, wide).first->second;
 }
 
 SkyGuide::Shares SkyGuide::widened(const Shares& open) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include <tbb/concurrent_unordered_map.h>
 
@@ -57,6 +58,9 @@ class SkyGuide {
     struct PlaceHash {
         std::size_t operator()(const Place& place) const;
     };
+    /// Sets of directions, of which neighbouring places mostly have different ones: to draw them anew for each place
+    /// takes longer than to trace them.
+    static constexpr std::size_t kWays = 16;
     /// by block
     using Shares = std::array<float, kBlocks>;
 
@@ -71,7 +75,8 @@ class SkyGuide {
     std::uint32_t transparent_bounces_;
     Vec3d middle_;
     std::function<double(double)> spacing_;
-    std::array<Shares, 3> middles_{};  // of blocks: directions, along each axis of the world
+    std::array<Shares, 3> middles_{};             // of blocks: directions, along each axis of the world
+    std::array<std::vector<Vec3f>, kWays> ways_;  // directions of rays into blocks
     mutable tbb::concurrent_unordered_map<Place, Shares, PlaceHash> open_;
 };
 
