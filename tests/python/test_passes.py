@@ -222,6 +222,27 @@ def test_a_group_has_the_light_of_its_lamps_after_all_bounces() -> None:
         assert total <= 3 * np.max(totals) + 1e-3, name
 
 
+def test_a_picture_without_time_lies_between_the_pixels_that_it_has() -> None:
+    """Passes too, whose sum it stays; the denoiser's guides are those of each pixel's own middle."""
+    scene = shlight.Scene()
+    scene.add_mesh(
+        4 * FLOOR, FACES, bsdf=nodes.lambert(0.5 + 0.4 * nodes.values.operation("sine", 9.0 * nodes.position().x))
+    )
+    scene.add_sphere_light([0, 0, 3], 1.0, (5, 5, 5), group="lamp")
+    from_above(scene, 6.0)
+    names = ["diffuse_direct", "diffuse_color", "denoising_albedo", "denoising_normal"]
+    options: dict[str, Any] = {"passes": names, "groups": True, "max_bounces": 0, "min_samples": 1, "max_samples": 4}
+    whole = shlight.render(scene, 128, 128, **options)
+    early = shlight.render(scene, 128, 128, **options, time_limit=1e-9)
+    assert len(np.unique(early["combined"][..., 0])) > 8000, "most pixels have a colour of their own"
+    for image in (early["diffuse_direct"] * early["diffuse_color"], groups_of(early)["lamp"]):
+        np.testing.assert_allclose(image, early["combined"][..., :3], rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(early["denoising_normal"], whole["denoising_normal"], atol=1e-6)
+    middles = 12 * (np.arange(128) + 0.5) / 128 - 6
+    albedo = np.broadcast_to(0.5 + 0.4 * np.sin(9 * middles), (128, 128))
+    np.testing.assert_allclose(early["denoising_albedo"][..., 1], albedo, atol=1e-4)
+
+
 def test_far_lights_are_told_apart() -> None:
     scene = shlight.Scene()
     scene.add_mesh(FLOOR, FACES)

@@ -87,6 +87,10 @@ bool is_of_middle(Pass kind) {
     return kind == Pass::depth || kind == Pass::position || kind == Pass::object_index || kind == Pass::material_index;
 }
 
+bool is_guide(Pass kind) {
+    return kind == Pass::denoising_albedo || kind == Pass::denoising_normal || kind == Pass::denoising_depth;
+}
+
 void PassImage::merge(std::size_t index, double before, double all, std::span<const double> sums) const {
     for (const PassLayout::Place& place : layout_->places()) {
         const std::span<float> own = pixel(index).subspan(place.first, place.size);
@@ -101,10 +105,12 @@ void PassImage::merge(std::size_t index, double before, double all, std::span<co
     }
 }
 
-void PassImage::copy(std::size_t from, std::size_t to) const {
-    for (const PassLayout::Place& place : layout_->places()) {
-        if (!is_of_middle(place.pass.kind)) {
-            std::ranges::copy(pixel(from).subspan(place.first, place.size), pixel(to).subspan(place.first).begin());
+void PassImage::fill(const GridPlace& place) const {
+    for (const auto& [pass, first, size] : layout_->places()) {
+        if (is_matte(pass.kind)) {
+            std::ranges::copy(pixel(place.nearest()).subspan(first, size), pixel(place.pixel()).subspan(first).begin());
+        } else if (!is_of_middle(pass.kind) && !is_guide(pass.kind)) {
+            place.fill(stride(), first, size, values_);
         }
     }
 }

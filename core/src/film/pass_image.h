@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "film/pixel_order.h"
 #include "shlight/render_passes.h"
 
 namespace shlight {
@@ -17,6 +18,8 @@ void add_to_matte(std::span<double> pairs, double identity, double share);
 bool is_matte(Pass kind);
 /// Whether a pass has the value of the ray through the pixel's middle, and is no mean.
 bool is_of_middle(Pass kind);
+/// Whether a pass is a guide of the denoiser, which a pixel has from its middle until it has rays.
+bool is_guide(Pass kind);
 
 /// Refers to the values.
 class PassImage {
@@ -33,8 +36,8 @@ class PassImage {
     /// Makes sums over more of a pixel's rays part of its means, which are those of `before` of `all` rays. Other
     /// pixels may be merged at the same time.
     void merge(std::size_t index, double before, double all, std::span<const double> sums) const;
-    /// Gives a pixel the values of another, but those of the ray through its middle.
-    void copy(std::size_t from, std::size_t to) const;
+    /// Gives a pixel without a ray what lies between those of a grid around it, but not what write_middles() knows.
+    void fill(const GridPlace& place) const;
     /// Makes of the means of all pixels what passes promise. No more pixels may be merged.
     void finish(int threads) const;
 

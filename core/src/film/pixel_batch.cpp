@@ -197,7 +197,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     last.end(RenderStage::pixels);
 }
 
-void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> values) {
+void PixelBatch::write_middles(std::span<const Pixel> pixels, bool guides, std::span<float> values) {
     rays_.clear();
     neighbours_.clear();
     for (const Pixel& pixel : pixels) {
@@ -205,6 +205,9 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
     }
     surfaces_.trace(rays_, neighbours_, 1, hits_, ray_light_);
     surface_passes_.write_middles(surfaces_, rays_.size(), values);
+    if (guides) {
+        surface_passes_.write_guides(surfaces_, rays_.size(), values);
+    }
 }
 
 Pilot PixelBatch::pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {

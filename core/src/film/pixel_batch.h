@@ -110,7 +110,7 @@ class PixelBatch {
     /// Lets light bounce from now on.
     void follow(const PathSettings& paths) { surfaces_.follow(paths); }
     /// Passes of the ray through the middle of each pixel. values: pixels × layout.stride().
-    void write_middles(std::span<const Pixel> pixels, std::span<float> values);
+    void write_middles(std::span<const Pixel> pixels, bool guides, std::span<float> values);
     Pilot pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
     /// The report of the work since the last call.
     RenderReport take_report() { return std::exchange(report_, {}); }

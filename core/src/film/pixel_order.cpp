@@ -119,30 +119,37 @@ std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups
     return urgent;
 }
 
-void fill_between(int step, int width, int height, int threads, std::span<const float> base, std::span<float> image) {
-    const auto on_grid = [step](int i, int size) { return std::min(i, (size - 1) / step * step); };
-    const auto index = [&](int column, int row) {
-        return 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column));
+GridPlace::GridPlace(const Pixel& pixel, int step, int width, int height) {
+    const auto index = [width](int column, int row) {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
     };
+    const auto on_grid = [step](int i, int size) { return std::min(i, (size - 1) / step * step); };
+    const int left = pixel.column / step * step;
+    const int top = pixel.row / step * step;
+    const int right = on_grid(left + step, width);
+    const int bottom = on_grid(top + step, height);
+    pixel_ = index(pixel.column, pixel.row);
+    corners_ = {index(left, top), index(right, top), index(left, bottom), index(right, bottom)};
+    across_ = static_cast<float>(pixel.column - left) / static_cast<float>(step);
+    down_ = static_cast<float>(pixel.row - top) / static_cast<float>(step);
+}
+
+void GridPlace::fill(std::size_t channels, std::size_t first, std::size_t count, std::span<float> image) const {
+    for (std::size_t i = first; i < first + count; ++i) {
+        image[pixel_ * channels + i] = between([&](std::size_t corner) { return image[corner * channels + i]; });
+    }
+}
+
+void fill_between(int step, int width, int height, int threads, std::span<const float> base, std::span<float> image) {
     const auto at = [](std::span<const float> pixels, std::size_t i) { return pixels.empty() ? 0.0F : pixels[i]; };
-    parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t line) {
-        const auto row = static_cast<int>(line);
-        const int top = row / step * step;
-        const int bottom = on_grid(top + step, height);
-        const auto down = static_cast<float>(row - top) / static_cast<float>(step);
+    parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t row) {
         for (int column = 0; column < width; ++column) {
-            const int left = column / step * step;
-            const int right = on_grid(left + step, width);
-            const auto across = static_cast<float>(column - left) / static_cast<float>(step);
-            if (row == top && column == left) continue;
-            for (std::size_t i = 0; i < 4; ++i) {
-                const auto beyond_base = [&](int x, int y) {
-                    return image[index(x, y) + i] - at(base, index(x, y) + i);
-                };
-                const float above = std::lerp(beyond_base(left, top), beyond_base(right, top), across);
-                const float below = std::lerp(beyond_base(left, bottom), beyond_base(right, bottom), across);
-                const std::size_t own = index(column, row) + i;
-                image[own] = std::max(at(base, own) + std::lerp(above, below, down), 0.0F);
+            const GridPlace place({column, static_cast<int>(row)}, step, width, height);
+            for (std::size_t i = 0; i < 4 && !place.is_on_grid(); ++i) {
+                const float beyond =
+                    place.between([&](std::size_t corner) { return image[4 * corner + i] - at(base, 4 * corner + i); });
+                const std::size_t own = 4 * place.pixel() + i;
+                image[own] = std::max(at(base, own) + beyond, 0.0F);
             }
         }
     });

@@ -78,9 +78,10 @@ void ProgressiveRenderer::add_bounces(bool has_bounced, const Watch& caller) {
     before_.assign(image_.begin(), image_.end());
     RecordPlacement placement(*picture_, before_, has_bounced, *stored_);
     const double until = start + kShareOfBounces * (time_limit() - start);
-    const auto has_time = [&] { return seconds() < until; };
-    for (int step = kWidestRecordStep; step >= kLeastRecordStep && has_time() && !is_left_; step /= 2) {
-        const RenderReport report = placement.add_grid(step, caller.stopped, has_time);
+    const auto seconds_left = [&] { return until - seconds(); };
+    refinement_.begin_again();
+    for (int step = kWidestRecordStep; step >= kLeastRecordStep && seconds_left() > 0 && !is_left_; step /= 2) {
+        const RenderReport report = placement.add_grid(step, caller.stopped, seconds_left);
         {
             const std::lock_guard lock(telling_);
             told_ += report;
@@ -123,6 +124,10 @@ double ProgressiveRenderer::time_limit() const {
 }
 
 void ProgressiveRenderer::write_middles(const Stopped& stopped) {
+    const auto any = [&](bool (*is)(Pass)) {
+        return std::ranges::any_of(picture_->layout.places(), [&](const auto& place) { return is(place.pass.kind); });
+    };
+    const bool guides = picture_->settings.sampling.time_limit > 0 && any(is_guide);
     const auto columns = static_cast<std::size_t>(picture_->width);
     const std::size_t count = (columns + kMiddlesAtOnce - 1) / kMiddlesAtOnce;
     const auto write = [&](std::size_t task) {
@@ -132,11 +137,11 @@ void ProgressiveRenderer::write_middles(const Stopped& stopped) {
         for (std::size_t column = first; column < std::min(first + kMiddlesAtOnce, columns); ++column) {
             pixels.push_back({static_cast<int>(column), static_cast<int>(task / count)});
         }
-        batches_.local().write_middles(pixels, pass_image_.pixels(task / count * columns + first, pixels.size()));
+        batches_.local().write_middles(pixels, guides,
+                                       pass_image_.pixels(task / count * columns + first, pixels.size()));
     };
-    const bool any = std::any_of(picture_->layout.places().begin(), picture_->layout.places().end(),
-                                 [](const PassLayout::Place& place) { return is_of_middle(place.pass.kind); });
-    parallel_for(any ? count * static_cast<std::size_t>(picture_->height) : 0, picture_->settings.threads, write);
+    parallel_for(guides || any(is_of_middle) ? count * static_cast<std::size_t>(picture_->height) : 0,
+                 picture_->settings.threads, write);
 }
 
 /// Step of the first grid: it has few pixels if a picture must be shown soon.
@@ -239,17 +244,12 @@ void ProgressiveRenderer::fill_unrendered() {
     if (pass_image_.empty()) {
         return;  // the image is interpolated already
     }
-    const RefinementGroup unrendered = refinement_.unrendered();
-    for (const Pixel& pixel : unrendered.pixels) {
-        const auto index = [&](int column, int row) {
-            return static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_->width) +
-                   static_cast<std::size_t>(column);
-        };
-        const std::size_t to = index(pixel.column, pixel.row);
-        const std::size_t from = index(pixel.column / grid_step_ * grid_step_, pixel.row / grid_step_ * grid_step_);
-        pass_image_.copy(from, to);
-        std::copy_n(image_.begin() + static_cast<std::ptrdiff_t>(4 * from), 4,
-                    image_.begin() + static_cast<std::ptrdiff_t>(4 * to));
+    for (const Pixel& pixel : refinement_.unrendered().pixels) {
+        const GridPlace place(pixel, grid_step_, picture_->width, picture_->height);
+        pass_image_.fill(place);
+        if (!picture_->parts.empty()) {  // the sum of what passes tell apart, which know nothing of `before_`
+            place.fill(4, image_);
+        }
     }
 }
 

@@ -16,6 +16,8 @@ namespace shlight {
 namespace {
 
 constexpr std::size_t kCellsAtOnce = 1024;
+/// Records, at least, that are made at once where there is a time limit.
+constexpr std::size_t kFirstRecords = 8;
 /// Rays that share shadow rays, and those that are shaded at once.
 constexpr std::size_t kGroupRays = 8;
 constexpr std::size_t kShadedAtOnce = 32 * kGroupRays;
@@ -24,6 +26,16 @@ constexpr std::size_t kLeastSamples = 2;
 constexpr double kSamplesPerRoot = 2;
 /// In place of the number of an end.
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+/// The number of records that are made next, of which there is time for most. start, left: seconds before the first
+/// record and now.
+std::size_t records_at_once(std::size_t made, double start, double left) {
+    if (std::isinf(left)) {
+        return kRecordsAtOnce;
+    }
+    const double per_record = made > 0 ? (start - left) / static_cast<double>(made) : start / kFirstRecords;
+    return static_cast<std::size_t>(std::clamp(left / per_record, 1.0 * kFirstRecords, 1.0 * kRecordsAtOnce));
+}
 
 /// Seldom another number for a few more rays.
 std::size_t wanted_samples(std::size_t rays) {
@@ -51,12 +63,13 @@ RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& 
       shaders_([this] { return Shader(*this); }) {}
 
 void RecordGatherer::gather(std::span<const Place> places, std::size_t rays_across, std::uint32_t seed, int threads,
-                            const Stopped& stopped, const std::function<bool()>& has_time,
+                            const Stopped& stopped, const std::function<double()>& seconds_left,
                             std::vector<LightRecord>& made, RenderReport& report) {
     rays_per_record_ = rays_across * rays_across;
     seed_ = seed;
-    for (std::size_t first = 0; first < places.size() && has_time(); first += kRecordsAtOnce) {
-        const std::size_t count = std::min(kRecordsAtOnce, places.size() - first);
+    const double start = seconds_left();
+    for (std::size_t first = 0; first < places.size() && seconds_left() > 0; first += records_.size()) {
+        const std::size_t count = std::min(records_at_once(first, start, seconds_left()), places.size() - first);
         records_.assign(count, {});
         distances_.assign(count * rays_per_record_, std::numeric_limits<double>::infinity());
         parallel_for(count, threads, [&](std::size_t i) {

@@ -43,11 +43,12 @@ class RecordGatherer {
         WorldCell cell;  ///< that the record stands for
     };
 
-    /// A record at each place by rays_across² rays, or at as many of the first as there is time for; seed: of them all.
+    /// A record at each place by rays_across² rays, or at as many of the first as there is time for; seed: of them all;
+    /// seconds_left: infinite without a time limit.
     /// Records of other places change what rays of a record see as little as can be. Throws RenderCancelled once
     /// stopped; the records that are `made` by then are whole.
     void gather(std::span<const Place> places, std::size_t rays_across, std::uint32_t seed, int threads,
-                const Stopped& stopped, const std::function<bool()>& has_time, std::vector<LightRecord>& made,
+                const Stopped& stopped, const std::function<double()>& seconds_left, std::vector<LightRecord>& made,
                 RenderReport& report);
 
   private:

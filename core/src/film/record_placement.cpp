@@ -43,13 +43,17 @@ constexpr double kUsualThreshold = 0.01;
 /// The threshold of a picture whose own is less.
 constexpr double kLeastThreshold = 1e-3;
 /// Differences between records that their noise explains are no error.
-constexpr float kNoiseVariances = 4;
+constexpr double kNoiseVariances = 4;
 
-double mean(const Rgb& color, const Rgb& scale) {
-    return (double{color.x / scale.x} + double{color.y / scale.y} + double{color.z / scale.z}) / 3;
+double mean(const Vec3d& color) {
+    return (color.x + color.y + color.z) / 3;
 }
 
-Rgb color_of(std::span<const float> image, std::size_t pixel) {
+Vec3d squared(const Rgb& color) {
+    return Vec3d(color) * Vec3d(color);
+}
+
+Vec3d color_of(std::span<const float> image, std::size_t pixel) {
     return {image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]};
 }
 
@@ -87,13 +91,13 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
     stored.records.begin_picture();
     double sum = 0;
     for (std::size_t i = 0; i < image.size() / 4; ++i) {
-        sum += mean(color_of(image, i), Rgb(1));
+        sum += mean(color_of(image, i));
     }
     const double average = 4 * sum / static_cast<double>(image.size());
     least_square_ = 0.01 * average * average;
 }
 
-RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const std::function<bool()>& has_time) {
+RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const std::function<double()>& seconds_left) {
     const int threads = picture_->settings.threads;
     const int between = std::max(step / kPixelsPerCell, kLeastBetween);
     std::vector<Row> rows(static_cast<std::size_t>((picture_->height + between - 1) / between));
@@ -120,7 +124,7 @@ RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const s
     std::vector<LightRecord> made;
     RenderReport report;
     try {
-        gatherer_.gather(places, rays_across(threshold_), picture_->settings.seed, threads, stopped, has_time, made,
+        gatherer_.gather(places, rays_across(threshold_), picture_->settings.seed, threads, stopped, seconds_left, made,
                          report);
     } catch (const RenderCancelled&) {
         add(made, lacking);
@@ -175,9 +179,9 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     }
     const std::size_t pixel = finder.pixels[surface.ray];
     const RecordedLight found = stored_->records.look_up(surface.point, number_of_all(surface.bounces));
-    const Rgb all = color_of(image_, pixel) + (has_bounced_ ? Rgb(0) : albedo * found.mean);
-    const Rgb scale = glm::sqrt(all * all + static_cast<float>(least_square_)) / glm::max(albedo, Rgb(1e-6F));
-    row.errors += found.weight > 0 ? mean(found.variance + found.noise, scale * scale) : 0.0;
+    const Vec3d all = color_of(image_, pixel) + (has_bounced_ ? Vec3d(0) : Vec3d(albedo * found.mean));
+    const Vec3d scale = glm::sqrt(all * all + least_square_) / Vec3d(glm::max(albedo, Rgb(1e-6F)));
+    row.errors += found.weight > 0 ? mean((found.variance + found.noise) / (scale * scale)) : 0.0;
     if (found.weight >= kEnough && step < kLeastRefined) {
         return;
     }
@@ -185,8 +189,8 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     const double cosine = std::max(glm::dot(surface.point.geometric_normal, surface.towards_viewer), kLeastView);
     const double between = std::max(step * width / std::sqrt(cosine), surface.point.error);
     const int level = WorldLattice::level(between);
-    row.seen.push_back({lattice_.cell(surface.point, level), level, surface.point, surface.bounces,
-                        static_cast<float>(threshold_) * scale});
+    row.seen.push_back(
+        {lattice_.cell(surface.point, level), level, surface.point, surface.bounces, threshold_ * scale});
 }
 
 std::vector<RecordPlacement::Wanted> RecordPlacement::find_wanted(std::vector<Seen> seen, int step,
@@ -230,16 +234,16 @@ std::optional<RecordPlacement::Wanted> RecordPlacement::wanted(std::span<const S
     }
     const SurfacePoint point = found.value_or(nearest.point);
     const WorldCell cell = lattice_.cell(point, level);
-    Rgb allowed(0);
+    Vec3d allowed(0);
     for (const Seen& own : seen) {
-        allowed += own.allowed / static_cast<float>(seen.size());
+        allowed += own.allowed / static_cast<double>(seen.size());
     }
     if (step >= kLeastRefined && step < kLeastWhole && !stored_->records.knows(cell)) {
         if (stored_->records.spares(seen.front().cell)) {
             return std::nullopt;
         }
         const RecordedLight light = stored_->records.look_up(point, number_of_all(nearest.bounces));
-        if (light.weight >= kEnough && mean(light.variance + light.noise, allowed * allowed) <= 1) {
+        if (light.weight >= kEnough && mean((light.variance + light.noise) / (allowed * allowed)) <= 1) {
             return std::nullopt;
         }
     }
@@ -257,10 +261,10 @@ void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {
         const RecordBasis basis = reflected_basis(own.normal);
         const double least = kLeastPixels / step * std::ldexp(1.0, one.level);
         stored_->records.for_each_near(one.place.surface, [&](std::size_t number, const LightRecord& other, float) {
-            const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
-            const Rgb noise = own.noise * own.noise + other.noise * other.noise;
-            const Rgb allowed = one.allowed * one.allowed + kNoiseVariances * noise;
-            if (number != own_number && mean(difference * difference, allowed) > 1) {
+            const Vec3d difference(sum_of(other.light[whole], basis) - own.reflected[whole]);
+            const Vec3d noise = squared(own.noise) + squared(other.noise);
+            const Vec3d allowed = one.allowed * one.allowed + kNoiseVariances * noise;
+            if (number != own_number && mean(difference * difference / allowed) > 1) {
                 const double distance = glm::distance(own.position, other.position);
                 radius[number] = std::min(radius[number], std::max(distance, least));
             }

@@ -33,7 +33,7 @@ class RecordPlacement {
     /// Makes the records of cells as wide as pixels are apart by a step, after those of all wider ones, or some of them
     /// if there is no time for all. Returns what that took. Throws RenderCancelled once stopped; records that are whole
     /// by then are stored.
-    RenderReport add_grid(int step, const Stopped& stopped, const std::function<bool()>& has_time);
+    RenderReport add_grid(int step, const Stopped& stopped, const std::function<double()>& seconds_left);
     /// Root mean square over the pixels that were last looked at of the errors by the records before, see
     /// RenderReport::noise.
     double error() const { return error_; }
@@ -45,13 +45,13 @@ class RecordPlacement {
         int level;  // of the cell
         SurfacePoint point;
         std::uint32_t bounces;
-        Rgb allowed;  // error of the light that a white diffuse surface reflects there
+        Vec3d allowed;  // error of the light that a white diffuse surface reflects there
     };
     /// A record that is wanted.
     struct Wanted {
         RecordGatherer::Place place;
         int level;
-        Rgb allowed;
+        Vec3d allowed;
     };
     /// What is found in a row of pixels.
     struct Row {

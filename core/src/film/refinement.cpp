@@ -136,6 +136,12 @@ Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, c
     return noise;
 }
 
+void Refinement::begin_again() {
+    for (State& state : states_) {
+        state.level = -1;
+    }
+}
+
 void Refinement::set_mean(std::span<const float> image) {
     double sum = 0;
     for (std::size_t i = 0; i < states_.size(); ++i) {

@@ -45,6 +45,8 @@ class Refinement {
     double rays_left() const { return rays_left_; }
     /// Pixels have a Pixel::most_by_path from now on.
     void limit_paths() { limits_paths_ = true; }
+    /// Forgets that pixels have rays, but how light falls on them.
+    void begin_again();
     std::uint32_t samples(int level) const { return level < 0 ? 0 : first_samples_ << (level + (level > 0 ? 1 : 0)); }
     /// Whether the first level is one ray through the middle, in whose place later ones come: of sets of four and more
     /// that are spread evenly none has a point in the middle, where one alone must be.

@@ -231,4 +231,18 @@ void SurfacePasses::write_middles(const CameraSurfaces& surfaces, std::size_t ra
     }
 }
 
+void SurfacePasses::write_guides(const CameraSurfaces& surfaces, std::size_t rays, std::span<float> values) {
+    of_middles_.assign(rays * layout_->stride(), 0);
+    add(surfaces, rays, 1, of_middles_);
+    for (const PassLayout::Place& place : layout_->places()) {
+        for (std::size_t ray = 0; ray < rays && is_guide(place.pass.kind); ++ray) {
+            const std::size_t first = ray * layout_->stride() + place.first;
+            std::transform(of_middles_.begin() + static_cast<std::ptrdiff_t>(first),
+                           of_middles_.begin() + static_cast<std::ptrdiff_t>(first + place.size),
+                           values.begin() + static_cast<std::ptrdiff_t>(first),
+                           [](double value) { return static_cast<float>(value); });
+        }
+    }
+}
+
 }  // namespace shlight

@@ -32,6 +32,8 @@ class SurfacePasses {
     void add(const CameraSurfaces& surfaces, std::size_t rays, std::size_t rays_per_pixel, std::span<double> sums);
     /// Writes the AOVs of single rays through the pixels' middles. values: pixels × layout.stride().
     void write_middles(const CameraSurfaces& surfaces, std::size_t rays, std::span<float> values);
+    /// The same for the guides of the denoiser.
+    void write_guides(const CameraSurfaces& surfaces, std::size_t rays, std::span<float> values);
 
   private:
     using Surface = CameraSurfaces::Surface;
@@ -72,6 +74,7 @@ class SurfacePasses {
     std::size_t matte_size_ = 0;  // floats per pixel
     std::vector<RayState> rays_;
     std::vector<SurfaceLobe> lobes_;
+    std::vector<double> of_middles_;
     std::map<LobeShape, std::shared_ptr<const AlbedoTable>> tables_;  // keys have width 0
 };
 

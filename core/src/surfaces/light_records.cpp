@@ -247,23 +247,26 @@ bool LightRecords::reflect(const SurfacePoint& point, const Vec3d& normal, std::
 RecordedLight LightRecords::look_up(const SurfacePoint& point, std::size_t number) const {
     Diffuse surface(point.position, point.shading_normal);
     RecordedLight found;
-    Rgb square(0);
-    Rgb own_noise(0);
-    float weights = 0;
+    Vec3d sum(0);
+    Vec3d square(0);
+    Vec3d own_noise(0);
+    double weights = 0;
     for_each_near(point, [&](std::size_t, const LightRecord& record, float nearness) {
-        const float weight = nearness * density(record);
-        const Rgb light = surface.reflected(record, number);
+        const double weight = double{nearness} * density(record);
+        const Vec3d light(surface.reflected(record, number));
+        const Vec3d noise(record.noise);
         found.weight += nearness;
         weights += weight;
-        found.mean += weight * light;
+        sum += weight * light;
         square += weight * light * light;
-        own_noise += weight * record.noise * record.noise;
-        found.noise += weight * weight * record.noise * record.noise;
+        own_noise += weight * noise * noise;
+        found.noise += weight * weight * noise * noise;
     });
     if (found.weight > 0) {
-        found.mean /= weights;
+        const Vec3d mean = sum / weights;
+        found.mean = Rgb(mean);
         found.noise /= weights * weights;
-        found.variance = glm::max((square - own_noise) / weights - found.mean * found.mean, Rgb(0));
+        found.variance = glm::max((square - own_noise) / weights - mean * mean, Vec3d(0));
     }
     return found;
 }

@@ -65,9 +65,10 @@ struct LightRecord {
 /// Light of the records near a place.
 struct RecordedLight {
     float weight = 0;  ///< sum of the records' weights; 0: none is near
-    /// Weighted mean of what a white diffuse surface reflects, its variance between records, and that of the mean by
-    /// the records' noise.
-    Rgb mean{0}, variance{0}, noise{0};
+    Rgb mean{0};       ///< weighted, of what a white diffuse surface reflects
+    /// Its variance between records, and that of the mean by the records' noise. Floats would not hold the squares of
+    /// the weights of records that hardly reach here.
+    Vec3d variance{0}, noise{0};
 };
 
 /// Any number of threads may read it.
