@@ -255,6 +255,46 @@ def keeps_a_normal_per_vertex(mesh: Any) -> bool:
     return VERSION < (5, 0, 0) and getattr(mesh, "normals_domain", "") == "CORNER"
 
 
+# Displaced meshes whose normals differ at a vertex keep their vertices and corners their own normals, to which what
+# displacement changes at the vertex is added; before, vertices are split, see splits_vertices.
+DISPLACED_KEEP_CORNERS = VERSION >= (5, 1, 0)
+# The bump of a displacement bends the normal of the displaced mesh, or that from before; on flat faces, too, that was
+# the one of the vertices at first.
+BENDS_OLD_NORMAL = VERSION >= (5, 0, 0)
+BENDS_VERTEX_NORMAL = (5, 0, 0) <= VERSION < (5, 1, 0)
+
+
+def splits_vertices(mesh: Any) -> str:
+    """How Cycles splits a mesh: along its sharp "edges" and around flat faces, wherever "normals" differ, or ""."""
+    if hasattr(mesh, "use_auto_smooth"):
+        return "normals" if mesh.use_auto_smooth else ""
+    return "edges" if mesh.normals_domain == "CORNER" and not DISPLACED_KEEP_CORNERS else ""
+
+
+def displacement_method(material: Any) -> str:
+    """Whether displacement bends normals ("BUMP"), moves vertices ("DISPLACEMENT") or does "BOTH".
+
+    Before Blender 4.1 the setting is that of Cycles' add-on.
+    """
+    owner = material if hasattr(material, "displacement_method") else getattr(material, "cycles", None)
+    return str(getattr(owner, "displacement_method", "BUMP"))
+
+
+def is_subdivided_adaptively(shown: Any, scene: Any) -> bool:
+    """Whether Cycles divides an object's mesh by what the camera sees of it.
+
+    The switch is the last modifier's, or before Blender 5.0 the object's, and read with experimental features alone.
+    """
+    own = shown.original  # the evaluated one does not follow its switch
+    last = own.modifiers[-1] if len(own.modifiers) else None
+    if last is None or last.type != "SUBSURF" or not last.show_render:
+        return False
+    if hasattr(last, "use_adaptive_subdivision"):
+        return bool(last.use_adaptive_subdivision)
+    is_experimental = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
+    return is_experimental and bool(getattr(getattr(own, "cycles", None), "use_adaptive_subdivision", False))
+
+
 def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:
     """Copies (height * width, channels) float32 pixels, bottom row first, into a render pass."""
     pixels = np.ascontiguousarray(pixels, dtype=np.float32)

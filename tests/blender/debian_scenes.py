@@ -218,10 +218,26 @@ def coarse(studio):
     studio.lamp("SUN", 3, (0, 0, 0), rotation_euler=(0.2, 1.1, 0), angle=0.3)
 
 
+def displaced(studio):
+    """A ball whose sharp edges come apart."""
+    material = studio.material(Color=GOLD)
+    material.cycles.displacement_method = "DISPLACEMENT"
+    tree = material.node_tree
+    waves, moves = tree.nodes.new("ShaderNodeTexGradient"), tree.nodes.new("ShaderNodeDisplacement")
+    waves.gradient_type = "SPHERICAL"
+    moves.inputs["Midlevel"].default_value = 0.2
+    tree.links.new(waves.outputs["Fac"], moves.inputs["Height"])
+    tree.links.new(moves.outputs["Displacement"], tree.get_output_node("CYCLES").inputs["Displacement"])
+    made = studio.ball(1.0, material, location=(0, 0, 1.1))
+    made.data.use_auto_smooth, made.data.auto_smooth_angle = True, math.radians(11.0)
+    studio.plane(material=studio.material())
+    studio.area(150, size=0.8)
+
+
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
     metal, principled, translucent, transmission, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
-    coarse,
+    coarse, displaced,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

@@ -96,6 +96,7 @@ LAMPS = ["point", "area", "spot", "small_spot", "small_point", "sun", "small_sun
 OTHERS = [
     "smooth",
     "coarse",
+    "displaced",
     "glossy",
     "metal",
     "translucent",

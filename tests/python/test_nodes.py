@@ -87,6 +87,16 @@ def test_a_program_is_as_long_as_what_varies() -> None:
     assert nodes.lambert(deep).operation_count == 5000
 
 
+def test_another_normal_counts_in_lobes_and_expressions() -> None:
+    tilted = nodes.values.normalize(nodes.Vector(0.3, 0.2, 1.0))
+
+    def shader(normal: nodes.Vector, at: nodes.Vector | None) -> Any:
+        return nodes.glossy(0.6, 0.5, at=at) + nodes.emission(normal * 0.5 + 0.5)
+
+    own = shader(nodes.normal(), None).with_normal(tilted)
+    np.testing.assert_array_equal(floor(own, "polygon"), floor(shader(tilted, tilted), "polygon"))
+
+
 def test_light_that_passes_through() -> None:
     # A lamp above a pane that passes a quarter of red and all of green, over a floor.
     square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=float) * 3

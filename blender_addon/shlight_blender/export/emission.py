@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shlight.nodes import Color, Value
+from shlight.nodes import Value, Vector
 from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.values import Step, in_order
 
@@ -66,10 +66,10 @@ def of_both_sides(radiance: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class VaryingEmission:
-    """Radiance (RGB) that an expression finds at each place of a surface."""
+class VaryingColor:
+    """Three numbers that an expression finds at each place of a surface."""
 
-    color: Color
+    color: Vector
 
     @cached_property
     def _steps(self) -> list[Step]:
@@ -105,9 +105,13 @@ class VaryingEmission:
         return results
 
     def values(self, inputs: Mapping[Input, Array], count: int) -> Array:
-        """Linear RGB (count, 3). Inputs are (count,), and what is missing is 0; or (3, count) at the places and at
+        """The numbers (count, 3). Inputs are (count,), and what is missing is 0; or (3, count) at the places and at
         those right of and below them, between which pictures are filtered."""
         return np.nan_to_num(self._evaluate(inputs, count)[:3].T)
+
+
+class VaryingEmission(VaryingColor):
+    """Radiance, as linear RGB, that an expression finds at each place of a surface."""
 
     def radiance(self, inputs: Mapping[Input, Array], count: int) -> Array:
         """Linear RGB (count, 3), which is never negative; `inputs` are those of `values`."""

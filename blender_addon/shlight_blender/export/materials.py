@@ -20,6 +20,7 @@ from shlight.nodes.shader import BLACK
 from ..compat import DEFAULT_IS_PRINCIPLED, aov_name, lets_light_through, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
+from .displacement import Displacement, displaced
 from .emission import VaryingEmission, of_both_sides
 from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin
 from .shaders import NODES, positive
@@ -63,6 +64,7 @@ class Surface:
     shader: Shader | Bsdf = field(default_factory=Shader)
     emission: RGB = field(default_factory=lambda: np.zeros(3))
     varying: VaryingEmission | None = None
+    displacement: Displacement | None = None  # of its vertices
     name: str = "default_surface"  # what Cryptomatte knows it by
     pass_index: int = 0
 
@@ -70,9 +72,10 @@ class Surface:
     def attribute_names(self) -> list[str]:
         """The mesh attributes that it reads."""
         given = [] if self.varying is None else self.varying.inputs
-        light = [str(index) for source, index, _ in given if source == "attribute"]
+        given += [] if self.displacement is None else self.displacement.offset.inputs
+        others = [str(index) for source, index, _ in given if source == "attribute"]
         own = [] if isinstance(self.shader, Bsdf) else self.shader.attribute_names
-        return list(dict.fromkeys([*own, *light]))
+        return list(dict.fromkeys([*own, *others]))
 
     @property
     def follows_uvs(self) -> bool:
@@ -165,12 +168,11 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
     if output is None:
         report.add(place, "there is no Material Output node; drawn black", Effect.THING)
         return Surface()
-    for name in ("Volume", "Displacement"):
-        socket = output.inputs.get(name)
-        if socket is not None and origin(socket).node is not None:
-            report.add(place, f"{name.lower()} is not supported; left out")
+    if origin(output.inputs["Volume"]).node is not None:
+        report.add(place, "volume is not supported; left out")
     reader = TreeReader(material, place, report, surroundings, NODES)
     shader = with_aovs(reader.shader(output.inputs["Surface"]), reader, material.node_tree)
+    shader, displacement = displaced(shader, material, output.inputs["Displacement"], reader)
     if not lets_light_through(material):
         graph = surroundings.depsgraph
         if shader.transparency.constant != BLACK and graph is not None and graph.scene.world is not None:
@@ -178,7 +180,7 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
             report.add(place, text, Effect.LIGHT)
         passes = shader.transparency * (1.0 - nodes.rays.shadow_ray())
         shader = replace(shader, transparency=nodes.values.color(passes))
-    return with_light(shader, place, report)
+    return replace(with_light(shader, place, report), displacement=displacement)
 
 
 def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:

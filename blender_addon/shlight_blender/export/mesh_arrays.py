@@ -10,23 +10,43 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compat import keeps_a_normal_per_vertex, mesh_triangles, smooth_corner_normals, smooth_vertex_normals, values_of
+from ..compat import (
+    Triangles,
+    keeps_a_normal_per_vertex,
+    mesh_triangles,
+    smooth_corner_normals,
+    smooth_vertex_normals,
+    splits_vertices,
+    values_of,
+)
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .mesh_attributes import COLOR, mesh_attributes
 
 Integers = NDArray[np.integer[Any]]
+FloatArray = NDArray[np.float32]
 
 SAME = 1e-5  # differences of normals that are rounding errors
 
 
-def as_cycles_keeps_them(mesh: Any, normals: NDArray[np.float32], corners: Integers) -> NDArray[np.float32]:
-    """Normals (loops, 3) of a mesh as they are after that. corners: (n, 3), of its triangles."""
+class Joined(NamedTuple):
+    """Corners of a mesh that are one in a mesh that is split: those at one of `places`.
+
+    Loop `loop[i]` is at `place[i]`, and may be at several.
+    """
+
+    loop: Integers
+    place: Integers
+    places: int
+
+
+def _joined_by_edges(mesh: Any) -> Joined:
+    """The corners that stay joined where a mesh is split along its sharp edges and around its flat faces."""
     vertex = values_of(mesh.loops, "vertex_index", np.int32)
     edge = values_of(mesh.loops, "edge_index", np.int32)
     start, count = (values_of(mesh.polygons, name, np.int32) for name in ("loop_start", "loop_total"))
@@ -46,27 +66,38 @@ def as_cycles_keeps_them(mesh: Any, normals: NDArray[np.float32], corners: Integ
     whole = np.flatnonzero(~is_cut[vertex])
     corner = np.concatenate([corner[shares], whole])
     place = np.concatenate([end[shares], 2 * len(ends) + vertex[whole]])
-    return _last_of_each(normals, corners, corner, place, 2 * len(ends) + len(is_cut))
+    return Joined(corner, place, 2 * len(ends) + len(is_cut))
 
 
-def _last_of_each(
-    normals: NDArray[np.float32], corners: Integers, corner: Integers, place: Integers, place_count: int
-) -> NDArray[np.float32]:
-    """Normals of the last of all corners that are connected by places; corner number `corner[i]` is at `place[i]`."""
-    any_corner = np.empty(place_count, np.int64)
-    any_corner[place] = corner
-    if np.abs(normals[corner] - normals[any_corner[place]]).max(initial=0.0) < SAME:
+def _joined_by_normals(mesh: Any, normals: FloatArray) -> Joined:
+    """The corners that stay joined where a mesh is split wherever their normals (loops, 3) differ."""
+    vertex = values_of(mesh.loops, "vertex_index", np.int32)
+    keys = np.concatenate([vertex[:, None], np.ascontiguousarray(normals).view(np.int32)], axis=1)
+    _, place = np.unique(keys, axis=0, return_inverse=True)
+    return Joined(np.arange(len(vertex)), place.reshape(-1), len(vertex))
+
+
+def as_cycles_keeps_them(joined: Joined, normals: FloatArray, corners: Integers) -> FloatArray:
+    """Normals (loops, 3): of joined corners all have that of the last. corners: (n, 3), of the mesh's triangles."""
+    any_loop = np.empty(joined.places, np.int64)
+    any_loop[joined.place] = joined.loop
+    if np.abs(normals[joined.loop] - normals[any_loop[joined.place]]).max(initial=0.0) < SAME:
         return normals
+    return normals[corners.ravel()[_last_of_each(joined, len(normals), corners)]]
+
+
+def _last_of_each(joined: Joined, loops: int, corners: Integers) -> NDArray[np.int64]:
+    """For each loop the last corner of a triangle, numbered through all, that it is joined with over any places."""
     order = corners.ravel()
-    last = np.zeros(len(normals), np.int64)
+    last = np.zeros(loops, np.int64)
     last[order] = np.arange(len(order))
     while True:
-        at_place = np.zeros(place_count, np.int64)
-        np.maximum.at(at_place, place, last[corner])
+        at_place = np.zeros(joined.places, np.int64)
+        np.maximum.at(at_place, joined.place, last[joined.loop])
         found = last.copy()
-        np.maximum.at(found, corner, at_place[place])
+        np.maximum.at(found, joined.loop, at_place[joined.place])
         if np.array_equal(found, last):
-            return normals[order[last]]
+            return last
         last = found
 
 
@@ -91,7 +122,11 @@ def doubled(centers: Sequence[NDArray[Any]]) -> list[bool]:
     return [bool((often[number[end - n : end]] > 1).any()) for n, end in zip(counts, ends, strict=True)]
 
 
-FloatArray = NDArray[np.float32]
+class Undisplaced(NamedTuple):
+    """The normals of vertices (n, 3), whether their faces are smooth or flat, and which triangles are smooth (k,)."""
+
+    normals: FloatArray
+    smooth: NDArray[np.bool_]
 
 
 @dataclass
@@ -100,6 +135,7 @@ class MeshArrays:
 
     normals: per vertex (n, 3) or per corner (k, 3, 3); None where all faces are flat.
     attributes: numbers per corner (k, 3, c) by name.
+    before: what displacement starts from, where it is asked for.
     """
 
     vertices: FloatArray
@@ -107,13 +143,31 @@ class MeshArrays:
     normals: FloatArray | None
     material_indices: NDArray[np.int32]
     attributes: dict[str, FloatArray] = field(default_factory=dict)
+    before: Undisplaced | None = None
+
+    @property
+    def corner_normals(self) -> FloatArray | None:
+        """The normals per corner; None where all faces are flat."""
+        normals = self.normals
+        return normals[self.triangles] if normals is not None and normals.ndim == 2 else normals
+
+    def chosen(self, which: NDArray[Any], slots: NDArray[Any]) -> MeshArrays:
+        """Some of the triangles, by number or by whether each is one, with the materials `slots` (k,) of all."""
+        normals = None if self.corner_normals is None else self.corner_normals[which]
+        attributes = {name: values[which] for name, values in self.attributes.items()}
+        return MeshArrays(self.vertices, self.triangles[which], normals, slots[which].astype(np.int32), attributes)
 
 
-def object_arrays(mesh_object: Any, place: str, names: Iterable[str], report: ExportReport) -> MeshArrays | None:
-    """The triangles of an object; None if it has none that can be drawn."""
+def object_arrays(
+    mesh_object: Any, place: str, names: Iterable[str], report: ExportReport, splits: bool = False
+) -> MeshArrays | None:
+    """The triangles of an object; None if it has none that can be drawn.
+
+    splits: for displacement, it has the vertices that Cycles' mesh has once it is split.
+    """
     mesh = mesh_object.to_mesh()
     try:
-        arrays = _mesh_arrays(mesh, names)
+        arrays = _mesh_arrays(mesh, names, splits)
     finally:
         mesh_object.to_mesh_clear()
     if arrays is None:
@@ -146,7 +200,7 @@ def flattened(arrays: MeshArrays, to_world: NDArray[np.float64]) -> MeshArrays |
     return replace(arrays, vertices=vertices.astype(np.float32), normals=None)
 
 
-def _mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
+def _mesh_arrays(mesh: Any, attribute_names: Iterable[str], splits: bool) -> MeshArrays | None:
     """Triangles of an evaluated mesh with those of the attributes that it has, None if it has no triangles."""
     triangles = mesh_triangles(mesh)
     if not len(triangles.corners):
@@ -157,10 +211,32 @@ def _mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None
         normals = smooth_corner_normals(mesh)
         if normals is not None:
             if keeps_a_normal_per_vertex(mesh):
-                normals = as_cycles_keeps_them(mesh, normals, triangles.corners)
+                normals = as_cycles_keeps_them(_joined_by_edges(mesh), normals, triangles.corners)
             normals = _repaired(normals[triangles.corners], vertices, corner_vertices)
     attributes = mesh_attributes(mesh, triangles, attribute_names)
-    return MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
+    arrays = MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
+    if splits:
+        arrays = _split(arrays, mesh, triangles)
+    return arrays
+
+
+def _split(arrays: MeshArrays, mesh: Any, triangles: Triangles) -> MeshArrays:
+    """A mesh with a vertex for all corners that are one in Cycles' mesh."""
+    smooth = values_of(mesh.polygons, "use_smooth", bool)[triangles.polygons]
+    kind = splits_vertices(mesh)
+    normals, own = smooth_corner_normals(mesh), arrays.corner_normals
+    if not kind or normals is None or own is None:
+        return replace(arrays, before=Undisplaced(values_of(mesh.vertex_normals, "vector", np.float32, 3), smooth))
+    joined = _joined_by_edges(mesh) if kind == "edges" else _joined_by_normals(mesh, normals)
+    last = _last_of_each(joined, len(normals), triangles.corners)[triangles.corners]
+    corner, vertex = np.unique(last, return_inverse=True)
+    return replace(
+        arrays,
+        vertices=arrays.vertices[arrays.triangles.ravel()[corner]],
+        triangles=vertex.reshape(last.shape).astype(np.int32),
+        normals=own,
+        before=Undisplaced(own.reshape(-1, 3)[corner], smooth),
+    )
 
 
 def _good(normals: FloatArray) -> NDArray[np.bool_]:
@@ -174,9 +250,21 @@ def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.i
     good = _good(normals)[:, :, None]
     if good.all():
         return normals
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    face = np.cross(b - a, c - a)
-    face_length = np.linalg.norm(face, axis=1, keepdims=True)
-    face = np.where(face_length > 0.0, face / np.where(face_length > 0.0, face_length, 1.0), (0.0, 0.0, 1.0))
-    repaired: FloatArray = np.where(good, normals, face[:, None, :]).astype(np.float32)
+    faces = face_normals(vertices, triangles, (0.0, 0.0, 1.0))
+    repaired: FloatArray = np.where(good, normals, faces[:, None, :]).astype(np.float32)
     return repaired
+
+
+def unit(v: NDArray[np.float64], otherwise: Any) -> NDArray[np.float64]:
+    """Vectors of length 1, and others where their length is 0."""
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    found: NDArray[np.float64] = np.where(length > 0.0, v / np.where(length > 0.0, length, 1.0), otherwise)
+    return found
+
+
+def face_normals(
+    vertices: FloatArray, triangles: NDArray[np.int32], otherwise: Sequence[float] = (1.0, 0.0, 0.0)
+) -> NDArray[np.float64]:
+    """Unit normals of triangles (k, 3); of those without area what is given, by default what Cycles takes."""
+    a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
+    return unit(np.cross(b - a, c - a), otherwise)

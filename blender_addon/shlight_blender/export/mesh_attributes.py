@@ -92,6 +92,10 @@ TANGENT = "\0tangent:"
 COLOR = "\0color:"
 # Prefix of a vertex's position in the mesh's texture space.
 GENERATED = "\0generated:"
+# A vertex's position in the frame of the mesh, before any displacement.
+UNDISPLACED = "\0undisplaced:"
+# The normal there that a bump of the displacement bends.
+UNDISPLACED_NORMAL = "\0undisplaced normal:"
 
 # Numbers that the mesh's shape gives.
 POINTINESS, RANDOM_PER_ISLAND = "\0pointiness:", "\0random per island:"
@@ -123,6 +127,8 @@ def _attribute(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
         return _layer(triangles, _color_layer(mesh.color_attributes, name.removeprefix(COLOR)))
     if name == GENERATED:
         return _generated(mesh, triangles)
+    if name == UNDISPLACED:
+        return triangles.vertices[triangles.corner_vertices]
     if name in SHAPES:
         return SHAPES[name](mesh).astype(np.float32)[triangles.corner_vertices][..., None]
     uvs = _uv_layer(mesh, name)

@@ -18,6 +18,7 @@ from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
+from .displacement import displace
 from .materials import Surface, read_material
 from .mesh_arrays import MOST_TRIANGLES, MeshArrays, complete, doubled, flattened, object_arrays
 from .mesh_attributes import UV
@@ -58,7 +59,7 @@ class KeptMesh:
     attributes: frozenset[str]  # that were asked for
     surfaces: list[Surface]
     faces: NDArray[np.int64]  # how many of each surface
-    is_cut: bool  # its emission varies: it is cut into pieces for its first place
+    is_of_place: bool  # it is cut into pieces, or displaced, for its first place
     group: str | None  # see PassWishes.light_part
     report: ExportReport
     centers: NDArray[np.float64]  # of its triangles; none if there are too many to look for doubled ones
@@ -133,8 +134,10 @@ class SceneMeshes:
         first_place = kept.transforms[0]
         kept.transforms, kept.object_values, kept.labels = [], [], []
         if not self._changes.materials:
-            return kept if not kept.is_cut or np.array_equal(first_place, to_world) else None
-        if kept.is_cut or _is_cut(surfaces) or not self._attributes(surfaces) <= kept.attributes:
+            return kept if not kept.is_of_place or np.array_equal(first_place, to_world) else None
+        if kept.is_of_place or _is_cut(surfaces) or _is_displaced(surfaces):
+            return None
+        if not self._attributes(surfaces) <= kept.attributes:
             return None
         kept.surfaces = surfaces
         if kept.mesh is not None:
@@ -153,20 +156,23 @@ class SceneMeshes:
         """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
         shown, place, report = instance.object, _place_of(instance.object), ExportReport()
         attributes = self._attributes(surfaces)
-        arrays = object_arrays(shown, place, sorted(attributes), report)
+        is_cut, is_displaced = _is_cut(surfaces), _is_displaced(surfaces)
+        values = self._surroundings.object_values.of(instance) if is_cut or is_displaced else []
+        arrays = object_arrays(shown, place, sorted(attributes), report, is_displaced)
+        if arrays is not None and is_displaced:
+            arrays = displace(arrays, [surface.displacement for surface in surfaces], to_world, values)
         if arrays is not None:
             complete(arrays, shown, sorted(_attribute_names(surfaces)), report)
         if arrays is not None and flat:
             arrays = flattened(arrays, to_world)
-        is_cut = arrays is not None and _is_cut(surfaces)
         if arrays is not None and is_cut:
-            values = self._surroundings.object_values.of(instance)
             at = np.eye(4) if flat else to_world
             arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
         centers = np.empty((0, 3)) if arrays is None else _centers(arrays)
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, is_cut, self._group(shown), report, centers)
+        of_place, group = is_cut or is_displaced, self._group(shown)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, group, report, centers)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             geometry_offset, shading_offset = terminator_offsets(shown)
@@ -281,6 +287,10 @@ def _attribute_names(surfaces: Sequence[Surface]) -> frozenset[str]:
 
 def _is_cut(surfaces: Sequence[Surface]) -> bool:
     return any(surface.varying is not None for surface in surfaces)
+
+
+def _is_displaced(surfaces: Sequence[Surface]) -> bool:
+    return any(surface.displacement is not None for surface in surfaces)
 
 
 def _materials(use: KeptMesh) -> dict[str, Any]:

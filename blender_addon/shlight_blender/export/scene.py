@@ -12,6 +12,7 @@ import numpy as np
 
 import shlight
 
+from ..compat import is_subdivided_adaptively
 from ..frame import Frame, frame_of
 from ..names import name_of
 from ..passes import PassWishes, pass_wishes
@@ -319,6 +320,8 @@ def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportRep
     for name, (neutral, text) in VISIBILITY.items():
         if view_layer.use_solid and any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
             report.add(place, text, Effect.THING)
+    if view_layer.use_solid and is_subdivided_adaptively(seen, view_layer.id_data):
+        report.add(place, "adaptive subdivision is not supported; its mesh is as its modifiers leave it")
     for system in seen.particle_systems if view_layer.use_strand else ():
         settings = system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":

@@ -10,6 +10,7 @@ from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, numbe
 
 from ..compat import PRINCIPLED_IS_LAYERED, PRINCIPLED_UNSUPPORTED
 from ..report import Effect
+from .displacement import DISPLACEMENT_NODES
 from .input_nodes import INPUT_NODES, fresnel_of
 from .nodes import NodeInputs, ReadNode, own_value
 from .texture_nodes import TEXTURE_NODES
@@ -170,5 +171,6 @@ NODES: dict[str, ReadNode] = {
     **TEXTURE_NODES,
     **INPUT_NODES,
     **VALUE_NODES,
+    **DISPLACEMENT_NODES,
     **SHADERS,
 }

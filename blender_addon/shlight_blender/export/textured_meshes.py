@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .emission import TURNED, Input, VaryingEmission, divided, of_both_sides, share_of
+from .corner_values import at_corners
+from .emission import VaryingEmission, divided, of_both_sides, share_of
 from .materials import Surface
 from .mesh_arrays import MeshArrays
-from .mesh_attributes import attribute_component
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -219,13 +219,11 @@ def with_even_emission(
 
     to_world, object_values: of the instance where emission that depends on the place or the object is looked up.
     """
-    if arrays.normals is not None and arrays.normals.ndim == 2:
-        arrays = replace(arrays, normals=arrays.normals[arrays.triangles])
     slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
     varying = [slot for slot in np.unique(slots) if surfaces[slot].varying is not None]
-    made, parts = list(surfaces), [_chosen(arrays, ~np.isin(slots, varying), slots)]
+    made, parts = list(surfaces), [arrays.chosen(~np.isin(slots, varying), slots)]
     for slot in varying:
-        part = _chosen(arrays, slots == slot, slots)
+        part = arrays.chosen(slots == slot, slots)
         pieces = _cut_surface(part, surfaces[slot].varying, to_world, object_values, MOST_PIECES // len(varying))
         colors = share_colors(pieces.radiance, pieces.area)
         _report_error(pieces, colors, remark)
@@ -251,10 +249,10 @@ def _cut_surface(
     corners = part.vertices[part.triangles].astype(np.float64)
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     inputs = list(dict.fromkeys(emission.inputs))
-    known = np.stack([_at_corners(part, corners, to_world, object_values, entry) for entry in inputs], axis=2)
+    known = np.stack([at_corners(part, to_world, object_values, entry) for entry in inputs], axis=2)
     count = 3 * len(corners)
-    at_corners = {entry: known[:, :, i].reshape(-1) for i, entry in enumerate(inputs)}
-    texels = [places.reshape(-1, 3, 2) for places in emission.texels(at_corners, count)]
+    given = {entry: known[:, :, i].reshape(-1) for i, entry in enumerate(inputs)}
+    texels = [places.reshape(-1, 3, 2) for places in emission.texels(given, count)]
     differs = (known != known[:, :1]).any(axis=(1, 2))
     levels = np.zeros(len(corners), dtype=np.int64)
     for places in texels or [np.zeros((len(corners), 3, 2))]:
@@ -264,39 +262,6 @@ def _cut_surface(
         return emission.of_sides({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))
 
     return cut(radiance, known, levels, area, most)
-
-
-def _at_corners(
-    part: MeshArrays, corners: Array, to_world: Array, object_values: Sequence[float], entry: Input
-) -> Array:
-    """A number that a program reads, at the corners (k, 3); it is linear between them, or taken to be."""
-    source, index, component = entry
-    places = corners @ to_world[:3, :3].T + to_world[:3, 3]
-    if source == "position":
-        return places[..., component]
-    if source == "attribute":
-        values = part.attributes.get(str(index))
-        if values is None:
-            return np.zeros(corners.shape[:2])
-        return np.broadcast_to(attribute_component(values, component).astype(np.float64), corners.shape[:2])
-    if source in ("object_to_world", "world_to_object"):
-        matrix = to_world if source == "object_to_world" else np.linalg.pinv(to_world)
-        return np.full(corners.shape[:2], matrix[component // 4, component % 4])
-    if source == "barycentric":
-        return np.broadcast_to(np.eye(3)[1 + component], corners.shape[:2])
-    if source == "object_value" and int(index) < len(object_values):
-        return np.full(corners.shape[:2], object_values[int(index)])
-    face = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
-    face *= np.sign(np.linalg.det(to_world[:3, :3])) / np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 1e-30)
-    if source in TURNED:
-        return np.repeat(face[:, None, component], 3, axis=1)
-    return np.zeros(corners.shape[:2])
-
-
-def _chosen(arrays: MeshArrays, which: NDArray[np.bool_], slots: NDArray[Any]) -> MeshArrays:
-    normals = None if arrays.normals is None else arrays.normals[which]
-    attributes = {name: values[which] for name, values in arrays.attributes.items()}
-    return MeshArrays(arrays.vertices, arrays.triangles[which], normals, slots[which].astype(np.int32), attributes)
 
 
 def _of_pieces(part: MeshArrays, pieces: Pieces, slots: NDArray[Any]) -> MeshArrays:

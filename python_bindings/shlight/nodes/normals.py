@@ -68,11 +68,21 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
 
 
 def bump(
-    height: Number, strength: Number = 1.0, distance: Number = 1.0, *, at: Vector | None = None, invert: bool = False
+    height: Number,
+    strength: Number = 1.0,
+    distance: Number = 1.0,
+    *,
+    at: Vector | None = None,
+    place: Vector | None = None,
+    invert: bool = False,
 ) -> Vector:
-    """The normal of a surface that is raised by height times distance [m]; strength mixes it with the one before."""
+    """The normal of a surface that is raised by height times distance [m]; strength mixes it with the one before.
+
+    at, place: the normal before, and where the hit is, in the frame of the normal that is returned; None: the smooth
+        normal and the position in the world.
+    """
     before = normal() if at is None else at
-    here = position()
+    here = position() if place is None else place
     dx = Vector(*(right(component) for component in here))
     dy = Vector(*(below(component) for component in here))
     rx, ry = cross(dy, before), cross(before, dx)

@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
+from typing import Any
 
-from shlight.nodes.values import Color, Step, Value, arithmetic, in_order, number, select, steps
+from shlight.nodes.values import Color, Step, Value, Vector, arithmetic, in_order, number, select, steps
+
+# A function that gives what takes the place of a step, and None where the step stays.
+Replace = Callable[[Step], Value | None]
 
 
 class Ray(IntEnum):
@@ -31,10 +35,24 @@ def shadow_ray() -> Value:
 
 def on_ray(values: Iterable[Value], kind: Ray | None, *, filtered: bool = True) -> list[Value]:
     """Expressions as a ray of this kind, or of any, finds them. filtered: as the pictures in them are."""
+
+    def known(step: Step) -> Value | None:
+        return number(float(step.data == kind)) if step.name == "ray" and kind is not None else None
+
+    return _replaced(values, known, filtered=filtered)
+
+
+def with_vectors(values: Iterable[Value], vectors: Mapping[str, Vector]) -> list[Value]:
+    """Expressions that read other vectors in the place of some sources, "position" for instance."""
+    known: dict[Any, Value] = {(source, 0, i): c for source, own in vectors.items() for i, c in enumerate(own)}
+    return _replaced(values, lambda step: known.get(step.data) if step.name == "input" else None)
+
+
+def _replaced(values: Iterable[Value], replace: Replace, *, filtered: bool = True) -> list[Value]:
     wanted = list(values)
     found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
     for step in in_order(value.step for value in wanted):
-        own = _rebuilt(step, found, kind)
+        own = _rebuilt(step, found, replace)
         found[id(step)] = own if filtered or step.name != "image" else _at_the_place(step, own)
     return [_result(value, found) for value in wanted]
 
@@ -54,9 +72,9 @@ def _result(value: Value, found: dict[int, tuple[Value, ...] | None]) -> Value:
     return value if results is None else results[value.output]
 
 
-def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], kind: Ray | None) -> tuple[Value, ...] | None:
-    if step.name == "ray" and kind is not None:
-        return (number(float(step.data == kind)),)
+def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], replace: Replace) -> tuple[Value, ...] | None:
+    if (new := replace(step)) is not None:
+        return (new,)
     if all(found[id(a.step)] is None for a in step.arguments):
         return None
     arguments = [_result(a, found) for a in step.arguments]

@@ -13,7 +13,7 @@ from shlight import _core
 from shlight._arrays import checked_number
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
-from shlight.nodes.rays import Ray, color_on_ray, on_ray, shows_pictures
+from shlight.nodes.rays import Ray, color_on_ray, on_ray, shows_pictures, with_vectors
 from shlight.nodes.values import (
     LARGEST_RADIANCE,
     Color,
@@ -27,6 +27,7 @@ from shlight.nodes.values import (
     normalize,
     number,
     reflectance,
+    vector,
 )
 
 BLACK = (0.0, 0.0, 0.0)
@@ -106,6 +107,38 @@ class Shader:
         """The same, with values that `shlight.render` delivers as passes by these names: numbers, or colours (RGBA)."""
         own = {name: number(of) if isinstance(of, Value | int | float) else color(of) for name, of in aovs.items()}
         return replace(self, aovs={**self.aovs, **own})
+
+    def with_normal(self, normal: Vector) -> Shader:
+        """The same with another normal wherever the smooth one counts, in expressions too.
+
+        A normal that leans from this one throws the shadow of a bump; this one throws none, as that of a bump that
+        Cycles makes of a displacement.
+        """
+        n = vector(normal, "normal")
+        vectors = {id(None): n}  # by id of what they take the place of: lobes that share a normal still do
+
+        def own(value: Value) -> Value:
+            return with_vectors([value], {"normal": n})[0]
+
+        def own_color(of: Color) -> Color:
+            return Color(*with_vectors((*of, of.alpha), {"normal": n}))
+
+        def own_normal(of: Vector | None) -> Vector:
+            if of is not None and id(of) not in vectors:
+                vectors[id(of)] = Vector(*with_vectors(of, {"normal": n}))
+            return vectors[id(of)]
+
+        def turned(of: Any) -> Any:
+            alpha = None if of.alpha is None else own(of.alpha)
+            return replace(of, weight=own_color(of.weight), alpha=alpha, normal=own_normal(of.normal))
+
+        return Shader(
+            tuple(turned(lobe) for lobe in self.lobes),
+            own_color(self.emission),
+            own_color(self.transparency),
+            {name: own(of) if isinstance(of, Value) else own_color(of) for name, of in self.aovs.items()},
+            tuple(replace(turned(of), ior=own(of.ior)) for of in self.refractions),
+        )
 
     def compiled(self) -> _core.SurfaceShader:
         """The core's object of this shader."""
