@@ -58,7 +58,6 @@ def test_a_picture_at_an_input(studio: Any, name: str, distribution: str) -> Non
         pixels[..., 2] = 0.95
     node = tree.nodes.new("ShaderNodeTexImage")
     node.image = studio.picture(pixels, is_float=True)
-    node.image.colorspace_settings.name = "Non-Color"
     output = node.outputs["Color"]
     if name == "Normal":
         bent = tree.nodes.new("ShaderNodeNormalMap")
