@@ -211,6 +211,11 @@ def cells() -> list[Case]:
             made.append(Case(kind, own, distance, {**properties, "distance": metric}))
     none: dict[str | int, Any] = {**inputs, "Smoothness": 0.0}
     made.append(Case(kind, none, "Distance", {"feature": "SMOOTH_F1"}))
+    waves: dict[str | int, Any] = {"Vector": "a", "Scale": "w", "Orientation 2D": "x", "Orientation 3D": "b"}
+    for output, anisotropy in itertools.product(("Value", "Phase", "Intensity"), ("s", 1.0)):
+        for dimensions in "23":
+            own = {**waves, "Frequency": "p1", "Anisotropy": anisotropy}
+            made.append(Case("ShaderNodeTexGabor", own, output, {"gabor_type": f"{dimensions}D"}))
     made.append(Case(kind, {**inputs, "Exponent": 0.25, "Randomness": 1.0}, "Distance", {"distance": "MINKOWSKI"}))
     return made
 

@@ -28,6 +28,21 @@ def _voronoi(inputs: NodeInputs) -> Expression:
     return outputs.get(inputs.output.identifier, found.distance)
 
 
+def _gabor(inputs: NodeInputs) -> Expression:
+    dimensions = int(inputs.node.gabor_type[0])
+    found = nodes.gabor(
+        inputs.vector_or("Vector", nodes.attribute(GENERATED)),
+        dimensions=dimensions,
+        scale=inputs.number("Scale"),
+        frequency=inputs.number("Frequency"),
+        anisotropy=inputs.number("Anisotropy"),
+        orientation=inputs.number("Orientation 2D") if dimensions == 2 else inputs.vector("Orientation 3D"),
+    )
+    outputs: dict[str, Expression] = {"Phase": found.phase, "Intensity": found.intensity}
+    return outputs.get(inputs.output.identifier, found.value)
+
+
 CELL_NODES: dict[str, ReadNode] = {
     "TEX_VORONOI": _voronoi,
+    "TEX_GABOR": _gabor,
 }

@@ -22,13 +22,27 @@ namespace shlight::HWY_NAMESPACE {
 
 using Integers = hn::RebindToSigned<Floats>;
 
+using Number = V<Floats>;
 /// A place in n dimensions, or n numbers, of each lane.
 template <std::size_t n>
-using Row = std::array<V<Floats>, n>;
+using Row = std::array<Number, n>;
+
+HWY_INLINE Number constant(float value) {
+    return hn::Set(Floats(), value);
+}
+
+template <std::size_t n>
+HWY_INLINE Number dot(const Row<n>& a, const Row<n>& b) {
+    Number total = hn::Mul(a[0], b[0]);
+    for (std::size_t i = 1; i < n; ++i) {
+        total = hn::Add(total, hn::Mul(a[i], b[i]));
+    }
+    return total;
+}
 
 /// Bob Jenkins's hash of the bits of 1 … 4 floats.
 template <std::size_t n>
-HWY_INLINE V<Floats> jenkins(const Row<n>& key) {
+HWY_INLINE Number jenkins(const Row<n>& key) {
     std::array<V<Words>, n> words;
     for (std::size_t i = 0; i < n; ++i) {
         words[i] = hn::BitCast(Words(), key[i]);
@@ -39,12 +53,12 @@ HWY_INLINE V<Floats> jenkins(const Row<n>& key) {
 
 /// The same of a key and one number more.
 template <std::size_t n>
-HWY_INLINE V<Floats> jenkins(const Row<n>& key, float more) {
+HWY_INLINE Number jenkins(const Row<n>& key, float more) {
     Row<n + 1> longer;
     for (std::size_t i = 0; i < n; ++i) {
         longer[i] = key[i];
     }
-    longer[n] = hn::Set(Floats(), more);
+    longer[n] = constant(more);
     return jenkins(longer);
 }
 

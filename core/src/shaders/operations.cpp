@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "shaders/gabor_kernel.h"
 #include "shaders/hash_kernel.h"
 #include "shaders/image_texture.h"
 #include "shaders/voronoi_kernel.h"
@@ -167,6 +168,8 @@ constexpr std::array kOperations = {
     Operation{{"table2", 2, 1, Parameter::table}, &look_up<2>},
     Operation{{"table3", 3, 1, Parameter::table}, &look_up<3>},
     Operation{{"image", 6, 4, Parameter::image}, &sample_image},
+    Operation{{"gabor2", 5, 2, Parameter::none}, &gabor<2>},
+    Operation{{"gabor3", 7, 2, Parameter::none}, &gabor<3>},
     Operation{{"voronoi1", 7, 5, Parameter::mode, kVoronoiModes}, &voronoi<1>},
     Operation{{"voronoi2", 8, 6, Parameter::mode, kVoronoiModes}, &voronoi<2>},
     Operation{{"voronoi3", 9, 7, Parameter::mode, kVoronoiModes}, &voronoi<3>},

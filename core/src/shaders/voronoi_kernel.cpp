@@ -19,13 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-using Number = V<Floats>;
-
 constexpr int kMostDetail = 15;
-
-HWY_INLINE Number constant(float value) {
-    return hn::Set(Floats(), value);
-}
 
 HWY_INLINE Number clamped(Number value, float low, float high) {
     // The bound comes second: on x86 it stands for NaN.
@@ -78,15 +72,6 @@ HWY_INLINE Row<n> zero() {
     Row<n> result;
     result.fill(constant(0));
     return result;
-}
-
-template <std::size_t n>
-HWY_INLINE Number dot(const Row<n>& a, const Row<n>& b) {
-    Number total = hn::Mul(a[0], b[0]);
-    for (std::size_t i = 1; i < n; ++i) {
-        total = hn::Add(total, hn::Mul(a[i], b[i]));
-    }
-    return total;
 }
 
 /// base^exponent for bases from 0 on.

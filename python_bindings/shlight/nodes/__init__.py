@@ -5,7 +5,7 @@ What these functions return stands where a constant stood: `Bsdf.lambert(nodes.i
 """
 
 from shlight.nodes import colors, inputs, mathematics, rays, values
-from shlight.nodes.cells import Voronoi, voronoi
+from shlight.nodes.cells import Gabor, Voronoi, gabor, voronoi
 from shlight.nodes.colors import mix_color
 from shlight.nodes.inputs import (
     attribute,
@@ -38,6 +38,7 @@ from shlight.nodes.values import Color, Value, Vector, clamp, equal, maximum, mi
 __all__ = [
     "Bricks",
     "Color",
+    "Gabor",
     "Shader",
     "Value",
     "Vector",
@@ -52,6 +53,7 @@ __all__ = [
     "colors",
     "emission",
     "equal",
+    "gabor",
     "geometric_normal",
     "ggx",
     "glass",
