@@ -35,6 +35,13 @@ class Lamps:
     instancer_hides = VERSION >= (4, 5, 0)  # what hides the object that shows a lamp's instance hides the lamp
 
 
+class Noise:
+    """How Cycles' noise differs between versions."""
+
+    repeats = IS_BLENDER_4  # after 100 000 cells, where floats begin to lack fractions
+    roughness_is_clamped = VERSION < (4, 1, 0)  # to 0 … 1, of nodes other than Musgrave Texture
+
+
 # An orthographic camera's lens lies in the near clip plane, or where the camera is.
 LENS_IS_AT_NEAR_PLANE = not IS_BLENDER_4
 

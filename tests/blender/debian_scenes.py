@@ -152,6 +152,22 @@ def curves(studio):
     studio.box((0.5, 0.5, 0.5), material, location=(0.3, 0, 1.4))
 
 
+def noise(studio):
+    """A floor of Musgrave's noise, which no later Blender has, where plain noise and waves say."""
+    material = studio.material()
+    tree = material.node_tree
+    kinds = ("TexWave", "TexNoise", "TexMusgrave", "ValToRGB")
+    wave, plain, made, ramp = (tree.nodes.new(f"ShaderNode{kind}") for kind in kinds)
+    made.musgrave_type = "HETERO_TERRAIN"
+    made.inputs["Offset"].default_value = 0.6
+    tree.links.new(wave.outputs["Fac"], plain.inputs["Distortion"])
+    tree.links.new(plain.outputs["Color"], made.inputs["Vector"])
+    tree.links.new(made.outputs["Fac"], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    studio.plane(material=material)
+    studio.area(120, (0, 0, 2), shape="RECTANGLE", size=1, size_y=0.7)
+
+
 def sky(studio):
     """A world that is baked to a picture and a sun."""
     studio.plane(material=studio.material())
@@ -236,8 +252,8 @@ def displaced(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, translucent, transmission, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
-    coarse, displaced,
+    metal, principled, translucent, transmission, curves, noise, sky, dark, panoramic, orthographic, simplified,
+    flat_camera, coarse, displaced,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

@@ -59,7 +59,7 @@ def set_sky(studio: Any, *, disc: bool, strength: float = 0.1, **properties: Any
 
 
 def set_gradient(studio: Any) -> None:
-    """Three colours, each bright on a side of its own, mixed with noise."""
+    """Three colours, each bright on a side of its own, mixed with noise that a node bends which makes it be baked."""
     lit = background(studio)
     coordinates = add_node(studio, "ShaderNodeTexCoord")
     half = add_node(studio, "ShaderNodeVectorMath", operation="MULTIPLY_ADD")
@@ -69,6 +69,7 @@ def set_gradient(studio: Any) -> None:
     mixed.inputs["Fac"].default_value = 0.3
     link(studio, coordinates.outputs["Generated"], half.inputs[0])
     link(studio, coordinates.outputs["Generated"], noise.inputs["Vector"])
+    link(studio, add_node(studio, "ShaderNodeAmbientOcclusion").outputs["AO"], noise.inputs["Distortion"])
     link(studio, half.outputs[0], mixed.inputs["Color1"])
     link(studio, noise.outputs["Color"], mixed.inputs["Color2"])
     link(studio, mixed.outputs["Color"], lit.inputs["Color"])

@@ -102,6 +102,7 @@ OTHERS = [
     "translucent",
     "transmission",
     "curves",
+    "noise",
     "sky",
     "panoramic",
     "orthographic",

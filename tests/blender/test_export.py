@@ -161,10 +161,10 @@ def test_nodes_of_a_lamp(studio: Any, use_nodes: bool) -> None:
     studio.compare()
     assert messages() == []
     if use_nodes:
-        noise = lamp.node_tree.nodes.new("ShaderNodeTexNoise")
-        lamp.node_tree.links.new(noise.outputs[0], emission.inputs["Color"])
+        occlusion = lamp.node_tree.nodes.new("ShaderNodeAmbientOcclusion")
+        lamp.node_tree.links.new(occlusion.outputs[0], emission.inputs["Color"])
         lamp.node_tree.links.new(falloff.outputs["Linear"], emission.inputs["Strength"])
-        for name in ("Noise Texture", "Light Falloff"):
+        for name in ("Ambient Occlusion", "Light Falloff"):
             assert [line for line in messages() if f"Light 'Area', node '{name}'" in line]
 
 

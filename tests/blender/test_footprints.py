@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 import numpy as np
+import pytest
 from scipy.ndimage import gaussian_filter
 
 from shlight.metrics import mean_ratio, rel_mse
@@ -41,6 +43,21 @@ def checkered(studio: Any) -> None:
     material.node_tree.links.new(node.outputs["Color"], material.node_tree.nodes["Diffuse BSDF"].inputs["Color"])
     floor(studio, material)
     studio.camera((0, -12, 1.2), (0, 0, 0.8))
+
+
+def noisy(studio: Any, node: str, properties: dict[str, Any], inputs: dict[str, float]) -> None:
+    """A floor that emits what a node makes of places in metres, seen flat, without its horizon."""
+    material = studio.material("ShaderNodeEmission")
+    tree = material.node_tree
+    made = tree.nodes.new(node)
+    for name, value in properties.items():
+        setattr(made, name, value)
+    for name, number in inputs.items():
+        made.inputs[name].default_value = number
+    tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Position"], made.inputs["Vector"])
+    tree.links.new(made.outputs["Fac"], tree.nodes["Emission"].inputs["Color"])
+    studio.plane(900.0, material)
+    studio.camera((0, 0, 1.6), (0, 1, 1.25))
 
 
 def bumpy(studio: Any) -> tuple[Any, Any]:
@@ -83,6 +100,27 @@ def test_one_ray_is_smooth_and_many_are_right(studio: Any) -> None:
     print(errors, f"mean {mean_ratio(single, reference):.4f} {mean_ratio(many, reference):.4f}")
     assert errors["one"] <= errors["Cycles"] / 20
     assert errors["many"] <= 1e-3
+
+
+@pytest.mark.parametrize(
+    ("node", "properties", "inputs"),
+    [
+        ("ShaderNodeTexNoise", {}, {"Scale": 2.0, "Detail": 4.0}),
+        ("ShaderNodeTexNoise", {"noise_type": "RIDGED_MULTIFRACTAL"}, {"Scale": 2.0, "Offset": 1.0}),
+        ("ShaderNodeTexWave", {"wave_type": "RINGS", "wave_profile": "TRI"}, {"Distortion": 2.0}),
+    ],
+)
+def test_noise_far_away(studio: Any, node: str, properties: dict[str, Any], inputs: dict[str, float]) -> None:
+    if not set(properties) <= set(getattr(bpy.types, node).bl_rna.properties.keys()):
+        pytest.skip("this version of Blender has no such noise")
+    noisy(studio, node, properties, inputs)
+    studio.resolution(48, 32)
+    ours_at, cycles_at = renders(studio)
+    reference = cycles_at(1024)
+    single, many, noise = (rel_mse(picture, reference) for picture in (ours_at(1), ours_at(64), cycles_at(1)))
+    print(f"one {single:.1e}, many {many:.1e}, Cycles {noise:.1e}")
+    assert single <= noise / 10
+    assert many <= noise / 100
 
 
 def test_few_rays_see_normals_as_many_do(studio: Any) -> None:

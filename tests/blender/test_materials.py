@@ -209,18 +209,18 @@ def test_objects_without_material_or_nodes(studio: Any) -> None:
 # --- what is not supported
 
 
-def linked_noise(material: Any, socket: Any) -> Any:
-    """Links a noise texture to a socket of the material's tree."""
-    noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
-    material.node_tree.links.new(noise.outputs[0], socket)
-    return noise
+def linked_occlusion(material: Any, socket: Any) -> Any:
+    """Links an Ambient Occlusion node, which is not supported, to a socket of the material's tree."""
+    node = material.node_tree.nodes.new("ShaderNodeAmbientOcclusion")
+    material.node_tree.links.new(node.outputs[0], socket)
+    return node
 
 
 def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
     studio.area()
     studio.camera()
     material = studio.material(name="Wood", Color=(0.25, 0.5, 0.75))
-    linked_noise(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
+    linked_occlusion(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
     studio.plane(material=material)
     (line,) = studio.messages(most=99)
     assert "Material 'Wood'" in line
@@ -269,7 +269,7 @@ def test_volumes_and_unknown_nodes_are_named(studio: Any) -> None:
     tree = material.node_tree
     output = tree.get_output_node("CYCLES")
     tree.links.new(tree.nodes.new("ShaderNodeVolumeScatter").outputs[0], output.inputs["Volume"])
-    linked_noise(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
+    linked_occlusion(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
     studio.plane(material=material)
     text = "\n".join(studio.messages(most=99))
     for part in ("volume is", "'Coat Weight'"):

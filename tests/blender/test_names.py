@@ -34,15 +34,17 @@ def named_scene(studio: Any) -> None:
     material = box.active_material
     material.name = "NAMEXXMAT"
     new, link = material.node_tree.nodes.new, material.node_tree.links.new
-    noise, texture, place, value = (new(f"ShaderNode{kind}") for kind in ("TexNoise", "TexImage", "UVMap", "Attribute"))
-    noise.name, noise.label, place.uv_map, value.attribute_name = "NAMEXXNOD", "NAMEXXLAB", "NAMEXXUVM", "NAMEXXATT"
+    other, texture, place, value = (
+        new(f"ShaderNode{kind}") for kind in ("AmbientOcclusion", "TexImage", "UVMap", "Attribute")
+    )
+    other.name, other.label, place.uv_map, value.attribute_name = "NAMEXXNOD", "NAMEXXLAB", "NAMEXXUVM", "NAMEXXATT"
     texture.image = bpy.data.images.new("NAMEXXIMG", 8, 8)
     texture.image.pack()
     diffuse = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
     mix, output = new("ShaderNodeMixRGB"), new("ShaderNodeOutputAOV")
     setattr(output, "aov_name" if hasattr(output, "aov_name") else "name", "NAMEXXAOV")
     link(place.outputs[0], texture.inputs[0])
-    link(noise.outputs["Color"], mix.inputs[1])
+    link(other.outputs["Color"], mix.inputs[1])
     link(texture.outputs[0], mix.inputs[2])
     link(value.outputs["Fac"], diffuse.inputs["Roughness"])
     link(mix.outputs[0], diffuse.inputs["Color"])

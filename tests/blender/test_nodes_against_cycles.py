@@ -55,7 +55,7 @@ class Case:
 
 def cases() -> list[Case]:
     """All nodes with all their modes."""
-    return [*mathematics(), *colors(), *vectors(), *cells(), *patterns(), *places()]
+    return [*mathematics(), *colors(), *vectors(), *cells(), *patterns(), *noises(), *places()]
 
 
 def choices(node: str, name: str) -> list[str]:
@@ -231,6 +231,33 @@ def patterns() -> list[Case]:
         properties = {"turbulence_depth": depth}
         made.append(Case("ShaderNodeTexMagic", {"Vector": "a", "Scale": "w", "Distortion": "y"}, 0, properties))
     made.append(Case("ShaderNodeTexMagic", {"Vector": "a", "Distortion": 0.0}, "Fac"))
+    return made
+
+
+def noises() -> list[Case]:
+    """Noise and Musgrave of all types and dimensions, and waves of all directions and profiles."""
+    made = []
+    shared: dict[str | int, Any] = {"Vector": "a", "W": "x", "Scale": 3.0}
+    inputs = {**shared, "Detail": 3.3, "Roughness": "t", "Lacunarity": 2.3, "Offset": 0.7, "Gain": 1.4}
+    for kind, count in itertools.product(choices("ShaderNodeTexNoise", "noise_type"), "1234"):
+        properties: dict[str, Any] = {"noise_dimensions": f"{count}D", "noise_type": kind}
+        made.append(Case("ShaderNodeTexNoise", inputs, "Color", properties))
+        # Rounding moves a place that noise has moved, which the colour's other parts, 100 … 200 cells further, and
+        # octaves of high frequency show.
+        made.append(Case("ShaderNodeTexNoise", {**inputs, "Detail": 1.3, "Distortion": "y"}, "Fac", properties))
+    made += [
+        Case("ShaderNodeTexNoise", inputs, "Color", {"normalize": False}),
+        Case("ShaderNodeTexNoise", {"Vector": "a"}, "Fac"),
+        # The last octaves are where the pattern repeats.
+        Case("ShaderNodeTexNoise", {"Vector": "a", "Scale": 4e3, "Detail": 14.0, "Roughness": 1.0}, "Color"),
+    ]
+    bent: dict[str | int, Any] = {"Vector": "a", "Scale": "t", "Distortion": "y", "Detail": 2.4, "Detail Scale": "x"}
+    bent |= {"Detail Roughness": "t", "Phase Offset": "z"}
+    for kind, number in itertools.product(("bands", "rings"), range(4)):
+        name = f"{kind}_direction"
+        wave = {"wave_type": kind.upper(), name: choices("ShaderNodeTexWave", name)[number]}
+        for profile, values in zip(("SIN", "SAW", "TRI"), (bent, {"Vector": "a", "Scale": "t"}, bent), strict=True):
+            made.append(Case("ShaderNodeTexWave", values, number % 2, {**wave, "wave_profile": profile}))
     return made
 
 

@@ -44,7 +44,7 @@ def build_scene():
     material.use_nodes = True
     nodes = material.node_tree.nodes
     colour = nodes["Principled BSDF"].inputs["Base Color"]
-    material.node_tree.links.new(nodes.new("ShaderNodeTexNoise").outputs["Color"], colour)
+    material.node_tree.links.new(nodes.new("ShaderNodeAmbientOcclusion").outputs["Color"], colour)
     bpy.context.object.data.materials.append(material)
     bpy.ops.object.light_add(type='AREA', location=(0, 0, 3))
     bpy.ops.object.light_add(type='POINT', location=(0, 0, 3))
@@ -138,7 +138,7 @@ def test_a_script_under_one_lamp_without_shadows(tmp_path: Path, capsys: pytest.
     assert said["reference"]["stopped_by"] == "seconds"
     assert 2 * sum(said["reference"]["chunks"]) == said["reference"]["samples"] < 100000
     assert said["scene"]["file"] == str(script)
-    assert said["shlight"]["unsupported"][0]["places"] == ["Material 'spotted', node 'Noise Texture'"]
+    assert said["shlight"]["unsupported"][0]["places"] == ["Material 'spotted', node 'Ambient Occlusion'"]
     assert "'spotted'" in capsys.readouterr().out
 
 

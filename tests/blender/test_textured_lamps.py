@@ -180,9 +180,9 @@ def test_what_is_not_supported_is_named(studio: Any) -> None:
     place(node, *UV)
     tree = lamp.data.node_tree
     emission = next(node for node in tree.nodes if node.type == "EMISSION")
-    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], emission.inputs["Color"])
+    tree.links.new(tree.nodes.new("ShaderNodeAmbientOcclusion").outputs["Color"], emission.inputs["Color"])
     (line,) = studio.messages()
-    assert "node 'Noise Texture': Noise Texture is not supported" in line
+    assert "node 'Ambient Occlusion': Ambient Occlusion is not supported" in line
 
 
 @pytest.mark.parametrize("kind", ["POINT", "SPOT", "SUN"])

@@ -227,10 +227,10 @@ def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.
     studio.camera()
     texture = set_picture(studio, gradient())
     tree = studio.scene.world.node_tree
-    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], texture.inputs["Vector"])
+    tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs["Color"], texture.inputs["Vector"])
     text = "\n".join(studio.messages())
     assert "(there is no Cycles)" in text
-    assert "Noise Texture is not supported" in text
+    assert "Sky Texture is not supported" in text
 
 
 def test_light_that_misses_the_tolerance_is_told(studio: Any) -> None:

@@ -13,6 +13,7 @@ from ..report import Effect
 from .displacement import DISPLACEMENT_NODES
 from .input_nodes import INPUT_NODES, fresnel_of
 from .nodes import NodeInputs, ReadNode, own_value
+from .noise_nodes import NOISE_NODES
 from .texture_nodes import TEXTURE_NODES
 from .value_nodes import VALUE_NODES
 
@@ -169,6 +170,7 @@ NODES: dict[str, ReadNode] = {
     "VALUE": lambda inputs: own_value(inputs.output),
     "RGB": lambda inputs: own_value(inputs.output),
     **TEXTURE_NODES,
+    **NOISE_NODES,
     **INPUT_NODES,
     **VALUE_NODES,
     **DISPLACEMENT_NODES,

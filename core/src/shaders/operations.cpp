@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "shaders/gabor_kernel.h"
+#include "shaders/gradient_noise.h"
 #include "shaders/hash_kernel.h"
 #include "shaders/image_texture.h"
 #include "shaders/voronoi_kernel.h"
@@ -174,6 +175,14 @@ constexpr std::array kOperations = {
     Operation{{"voronoi2", 8, 6, Parameter::mode, kVoronoiModes}, &voronoi<2>},
     Operation{{"voronoi3", 9, 7, Parameter::mode, kVoronoiModes}, &voronoi<3>},
     Operation{{"voronoi4", 10, 8, Parameter::mode, kVoronoiModes}, &voronoi<4>},
+    Operation{{"noise1", 10, 1, Parameter::mode, kFractals}, &noise<1>},
+    Operation{{"noise2", 12, 1, Parameter::mode, kFractals}, &noise<2>},
+    Operation{{"noise3", 14, 1, Parameter::mode, kFractals}, &noise<3>},
+    Operation{{"noise4", 16, 1, Parameter::mode, kFractals}, &noise<4>},
+    Operation{{"footprint1", 2, 3, Parameter::none}, &footprint<1>},
+    Operation{{"footprint2", 4, 4, Parameter::none}, &footprint<2>},
+    Operation{{"footprint3", 6, 5, Parameter::none}, &footprint<3>},
+    Operation{{"footprint4", 8, 6, Parameter::none}, &footprint<4>},
 };
 
 }  // namespace

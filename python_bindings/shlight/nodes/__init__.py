@@ -19,6 +19,7 @@ from shlight.nodes.inputs import (
     uv,
 )
 from shlight.nodes.mathematics import map_range, mapping
+from shlight.nodes.noises import musgrave, noise, wave
 from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.patterns import Bricks, bricks, magic
 from shlight.nodes.principled import (
@@ -69,6 +70,8 @@ __all__ = [
     "minimum",
     "mix",
     "mix_color",
+    "musgrave",
+    "noise",
     "normal",
     "normal_map",
     "object_value",
@@ -88,5 +91,6 @@ __all__ = [
     "uv",
     "values",
     "voronoi",
+    "wave",
     "wavelength",
 ]

@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from typing import Any
 
-from shlight.nodes.values import Color, Step, Value, Vector, arithmetic, in_order, number, select, steps
+from shlight.nodes.values import Color, Step, Value, Vector, arithmetic, in_order, number, operations, select, steps
+
+FOOTPRINTS = frozenset(f"footprint{count}" for count in range(1, 5))  # operations that noise is filtered by
 
 # A function that gives what takes the place of a step, and None where the step stays.
 Replace = Callable[[Step], Value | None]
@@ -34,7 +36,7 @@ def shadow_ray() -> Value:
 
 
 def on_ray(values: Iterable[Value], kind: Ray | None, *, filtered: bool = True) -> list[Value]:
-    """Expressions as a ray of this kind, or of any, finds them. filtered: as the pictures in them are."""
+    """Expressions as a ray of this kind, or of any, finds them. filtered: as the pictures and noises in them are."""
 
     def known(step: Step) -> Value | None:
         return number(float(step.data == kind)) if step.name == "ray" and kind is not None else None
@@ -53,7 +55,7 @@ def _replaced(values: Iterable[Value], replace: Replace, *, filtered: bool = Tru
     found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
     for step in in_order(value.step for value in wanted):
         own = _rebuilt(step, found, replace)
-        found[id(step)] = own if filtered or step.name != "image" else _at_the_place(step, own)
+        found[id(step)] = own if filtered or not _is_filter(step) else _at_the_place(step, own)
     return [_result(value, found) for value in wanted]
 
 
@@ -62,9 +64,13 @@ def color_on_ray(color: Color, kind: Ray, *, filtered: bool = True) -> Color:
     return Color(*on_ray((*color, color.alpha), kind, filtered=filtered))
 
 
-def shows_pictures(values: Iterable[Value]) -> bool:
-    """Whether a picture is part of expressions."""
-    return any(step.name == "image" for step in in_order(value.step for value in values))
+def has_filters(values: Iterable[Value]) -> bool:
+    """Whether a picture or noise, which the distance of camera rays filters, is part of expressions."""
+    return any(_is_filter(step) for step in in_order(value.step for value in values))
+
+
+def _is_filter(step: Step) -> bool:
+    return step.name == "image" or step.name in FOOTPRINTS
 
 
 def _result(value: Value, found: dict[int, tuple[Value, ...] | None]) -> Value:
@@ -86,6 +92,9 @@ def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], replace: Re
 
 
 def _at_the_place(image: Step, rebuilt: tuple[Value, ...] | None) -> tuple[Value, ...]:
-    """A picture that is looked up with no footprint. rebuilt: the results of the step that takes its place, if any."""
+    """A picture that is looked up with no footprint, or none of a noise. rebuilt: the results of the step that takes
+    its place, if any."""
+    if image.name in FOOTPRINTS:
+        return (number(0.0),) * operations()[image.name][2]
     u, v = (image if rebuilt is None else rebuilt[0].step).arguments[:2]
     return steps("image", u, v, 0.0, 0.0, 0.0, 0.0, data=image.data)

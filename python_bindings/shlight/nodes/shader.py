@@ -13,7 +13,7 @@ from shlight import _core
 from shlight._arrays import checked_number
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
-from shlight.nodes.rays import Ray, color_on_ray, on_ray, shows_pictures, with_vectors
+from shlight.nodes.rays import Ray, color_on_ray, has_filters, on_ray, with_vectors
 from shlight.nodes.values import (
     LARGEST_RADIANCE,
     Color,
@@ -164,7 +164,7 @@ class Shader:
         """Whether pictures are filtered. Where one decides what is seen at all they are not: the mean of its colours,
         of which most may belong to what is not seen, says nothing of those that are.
         """
-        return not shows_pictures(color_on_ray(self.transparency, Ray.CAMERA))
+        return not has_filters(color_on_ray(self.transparency, Ray.CAMERA))
 
     def _lobes_for_camera(self) -> list[Lobe]:
         """Lobes that show."""
