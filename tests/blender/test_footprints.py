@@ -105,7 +105,7 @@ def test_one_ray_is_smooth_and_many_are_right(studio: Any) -> None:
 @pytest.mark.parametrize(
     ("node", "properties", "inputs"),
     [
-        ("ShaderNodeTexNoise", {}, {"Scale": 2.0, "Detail": 4.0}),
+        ("ShaderNodeTexNoise", {}, {"Scale": 2.0, "Detail": 4.0, "Distortion": 0.3}),
         ("ShaderNodeTexNoise", {"noise_type": "RIDGED_MULTIFRACTAL"}, {"Scale": 2.0, "Offset": 1.0}),
         ("ShaderNodeTexWave", {"wave_type": "RINGS", "wave_profile": "TRI"}, {"Distortion": 2.0}),
     ],

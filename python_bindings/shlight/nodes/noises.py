@@ -85,10 +85,6 @@ def _footprint(place: Sequence[Value]) -> tuple[Value, ...]:
     return steps(f"footprint{len(place)}", *(right(x) for x in place), *(below(x) for x in place))
 
 
-def _zeros(like: Sequence[Value]) -> list[Value]:
-    return [number(0.0)] * len(like)
-
-
 def _scaled(place: Vector | None, w: Number, scale: Number, dimensions: int) -> list[Value]:
     """The coordinates of noise."""
     if not isinstance(dimensions, int) or not 1 <= dimensions <= 4:
@@ -111,8 +107,9 @@ def _moved(place: Sequence[Value], seed: int) -> list[Value]:
 
 
 def _distorted(place: list[Value], distortion: Number, period: float) -> tuple[list[Value], tuple[Value, ...]]:
-    """A place that noise has moved, and its footprint, which grows by the mean square of the noise's slope. It has no
-    axis then, along which places would lie that noise has moved elsewhere."""
+    """A place that noise has moved, and its footprint, which grows by the mean square of the noise's slope. Its
+    axis does not turn with the slope: places along it are right where the distortion is small, and else as good as any.
+    """
     footprint, amount, count = _footprint(place), number(distortion, "distortion"), len(place)
     if amount.constant == 0.0:
         return place, footprint
@@ -120,7 +117,7 @@ def _distorted(place: list[Value], distortion: Number, period: float) -> tuple[l
     trace, determinant, *axis = footprint
     moved = [x + plain.at(_moved(place, axis), footprint) * amount for axis, x in enumerate(place)]
     grown = 1.0 + amount * amount * (count * SLOPES[count - 1])
-    return moved, (trace * grown, determinant * (grown * grown), *_zeros(axis))
+    return moved, (trace * grown, determinant * (grown * grown), *axis)
 
 
 def noise(
@@ -302,7 +299,8 @@ def wave(
             period=PERIOD if checked_flag("repeats", repeats) else 0.0,
         )
         trace, determinant, *axis = _footprint(where)
-        footprint = (trace, determinant, *_zeros(axis))  # a wave's mean is not the wave of the mean
+        # A wave's mean is not the wave of the mean, so that noise is looked up at one place.
+        footprint = (trace, determinant, *(number(0.0) for _ in axis))
         turned = turned + amount * (octaves.at(where, footprint) * 2.0 - 1.0)
         variance = variance + amount * amount * replace(octaves, kind="fbm_loss").at(where, footprint)
     return shape(turned, variance)
