@@ -434,7 +434,8 @@ Found<n> octaves(const Settings& settings, const Row<n>& place) {
         scale = hn::Mul(scale, settings.lacunarity);
     }
     if (settings.mode.normalized) {
-        total.distance = hn::Div(total.distance, is_edge ? weights : hn::Mul(weights, largest));
+        const Number most = is_edge ? weights : hn::Mul(weights, largest);
+        total.distance = hn::IfThenElseZero(hn::Ne(most, constant(0)), hn::Div(total.distance, most));
         total.color = scaled(total.color, hn::Div(constant(1), weights));
     }
     return total;
