@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -106,6 +107,30 @@ Array<float> evaluate(const ShaderProgram& program,
     return out;
 }
 
+/// The microfacets of a kind, as "beckmann_schlick"; those without a Fresnel factor have the distribution's name alone.
+std::optional<GgxShape> microfacets_of(std::string_view kind, double ior) {
+    constexpr std::array<std::pair<std::string_view, Microfacets>, 3> kDistributions = {
+        {{"ggx", Microfacets::ggx},
+         {"beckmann", Microfacets::beckmann},
+         {"ashikhmin_shirley", Microfacets::ashikhmin_shirley}}};
+    constexpr std::array<std::pair<std::string_view, Fresnel>, 6> kFactors = {{{"", Fresnel::one},
+                                                                               {"_schlick", Fresnel::schlick},
+                                                                               {"_dielectric", Fresnel::dielectric},
+                                                                               {"_dip", Fresnel::dip},
+                                                                               {"_wide_dip", Fresnel::wide_dip},
+                                                                               {"_narrow_dip", Fresnel::narrow_dip}}};
+    for (const auto& [name, distribution] : kDistributions) {
+        if (kind.starts_with(name)) {
+            for (const auto& [factor, fresnel] : kFactors) {
+                if (kind.substr(name.size()) == factor) {
+                    return GgxShape{1, fresnel, ior, distribution};
+                }
+            }
+        }
+    }
+    return std::nullopt;
+}
+
 LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "lambert" || kind == "translucent") {
         return LambertShape{};
@@ -119,17 +144,8 @@ LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "bumped_lambert") {
         return DiffuseShape{Diffuse::bumped};
     }
-    if (kind == "ggx") {
-        return GgxShape{1, Fresnel::one};
-    }
-    if (kind == "ggx_schlick") {
-        return GgxShape{1, Fresnel::schlick};
-    }
-    if (kind == "ggx_dip") {
-        return GgxShape{1, Fresnel::dip};
-    }
-    if (kind == "ggx_dielectric") {
-        return GgxShape{1, Fresnel::dielectric, ior};
+    if (const auto microfacets = microfacets_of(kind, ior)) {
+        return *microfacets;
     }
     throw std::invalid_argument("lobes: there is no kind '" + kind + "'");
 }

@@ -68,23 +68,36 @@ enum class Fresnel {
     one,         ///< 1: the part with factor f0, and metals without Fresnel
     schlick,     ///< (1 - cosθ_d)⁵: the part with factor 1 - f0
     dielectric,  ///< max(0, F(ior, cosθ_d) - F(ior, 1)) / (1 - F(ior, 1)): that part by the Fresnel equations
-    dip          ///< cosθ_d (1 - cosθ_d)⁶: reduction by metals' edge tint (Kutz, Hašan & Edmondson 2021)
+    dip,         ///< cosθ_d (1 - cosθ_d)⁶: reduction by metals' edge tint (Kutz, Hašan & Edmondson 2021)
+    wide_dip,    ///< cosθ_d (1 - cosθ_d)³: with narrow_dip and the above it makes up Fresnel's curves of metals
+    narrow_dip   ///< cosθ_d (1 - cosθ_d)¹²
 };
 
-/// GGX with height-correlated Smith masking (Heitz 2014), f·cos = F D G₂ / (4 cosθ_o).
+/// The distribution of microfacets' normals, and their masking.
+enum class Microfacets {
+    ggx,       ///< height-correlated Smith masking (Heitz 2014)
+    beckmann,  ///< the same with the rational approximation of Walter et al. 2007 to Λ, "Microfacet Models for
+               ///< Refraction through Rough Surfaces"
+    /// Without masking: f·cos = F (n+1)/8π cosⁿθ_h cosθ_i / (cosθ_d max(cosθ_i, cosθ_o)), n = 2/α² - 2 (Ashikhmin &
+    /// Shirley 2000, "An Anisotropic Phong BRDF Model").
+    ashikhmin_shirley
+};
+
+/// Microfacets, f·cos = F D G₂ / (4 cosθ_o).
 /// A colour f0 needs two shapes: f0 · {one} + (1 - f0) · ({schlick or dielectric}) · …, see Bsdf::ggx.
 struct GgxShape {
     double alpha;                    ///< roughness² in Blender's terms, 0 … 1; 0 is a perfect mirror
     Fresnel fresnel = Fresnel::one;  ///< the factor included in f·cos
     double ior = 1.5;                ///< used by Fresnel::dielectric only
+    Microfacets distribution = Microfacets::ggx;
 
     bool is_glossy() const { return true; }
     double width() const { return alpha; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
-    /// Reflects ω_o at visible microfacets; normals have the density G₁ ⟨ω_o·h⟩ D / cosθ_o (Heitz 2018, "Sampling the
-    /// GGX distribution of visible normals"; by spherical caps, Dupuy & Benyoub 2023). f·cos ÷ density is F G₂/G₁,
-    /// which is bounded for all roughnesses and views.
+    /// Reflects ω_o at visible microfacets of GGX, whatever the distribution, which are spread the widest; normals have
+    /// the density G₁ ⟨ω_o·h⟩ D / cosθ_o (Heitz 2018, "Sampling the GGX distribution of visible normals"; by spherical
+    /// caps, Dupuy & Benyoub 2023). f·cos ÷ density is F G₂/G₁, which is bounded for all roughnesses and views.
     Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
     double density(const Vec3d& wo, const Vec3d& wi) const;
     double largest_density(const Vec3d& wo) const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// GGX lobes in lanes (lobe_lanes-inl.h). Included once per instruction set.
+// Lobes of microfacets in lanes (lobe_lanes-inl.h). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_GGX_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_GGX_INL_H_
 #undef SHLIGHT_KERNELS_GGX_INL_H_
@@ -12,6 +12,9 @@
 
 #include <numbers>
 
+#include <hwy/contrib/math/math-inl.h>
+
+#include "lobes/microfacets.h"
 #include "shlight/lobe_shape.h"
 #include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
@@ -40,9 +43,10 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
         const auto square = hn::Mul(edge, edge);
         return hn::Mul(hn::Mul(square, square), edge);
     }
-    if constexpr (kFresnel == Fresnel::dip) {
-        const auto square = hn::Mul(edge, edge);
-        return hn::Mul(hn::Mul(hn::Mul(square, square), square), hn::Sub(one, edge));
+    if constexpr (kFresnel == Fresnel::dip || kFresnel == Fresnel::wide_dip || kFresnel == Fresnel::narrow_dip) {
+        const auto cube = hn::Mul(hn::Mul(edge, edge), edge);
+        const auto sixth = kFresnel == Fresnel::wide_dip ? cube : hn::Mul(cube, cube);
+        return hn::Mul(kFresnel == Fresnel::narrow_dip ? hn::Mul(sixth, sixth) : sixth, hn::Sub(one, edge));
     }
     // The exact curve minus its value at normal incidence, (a² (1 + b²) - 2 a_0²) / 2 with b = 1 + f, a = a_0 + e,
     // where f and e are multiples of `edge`: no difference of nearly equal numbers is left.
@@ -69,6 +73,10 @@ HWY_INLINE V<D> fresnel_of(D d, const GgxShape& shape, V<D> cosine) {
             return fresnel_in_lanes<Fresnel::schlick>(d, shape.ior, cosine);
         case Fresnel::dip:
             return fresnel_in_lanes<Fresnel::dip>(d, shape.ior, cosine);
+        case Fresnel::wide_dip:
+            return fresnel_in_lanes<Fresnel::wide_dip>(d, shape.ior, cosine);
+        case Fresnel::narrow_dip:
+            return fresnel_in_lanes<Fresnel::narrow_dip>(d, shape.ior, cosine);
         case Fresnel::dielectric:
             return fresnel_in_lanes<Fresnel::dielectric>(d, shape.ior, cosine);
     }
@@ -131,9 +139,8 @@ class GgxLanes {
                        hn::NegMulAdd(hn::Mul(alpha, over_both), change, peak));
     }
 
-  private:
     /// D(h) / 2 = α² / (2π) · (|h|² / (α² h_z² + h_x² + h_y²))².
-    HWY_INLINE V<Floats> half_distribution(const HalfSum& sum, const View<Floats>& view) const {
+    static HWY_INLINE V<Floats> half_distribution(const HalfSum& sum, const View<Floats>& view) {
         const Floats d;
         const auto across = hn::MulAdd(sum.x, sum.x, hn::Mul(sum.y, sum.y));
         const auto up = hn::Mul(sum.z, sum.z);
@@ -143,6 +150,7 @@ class GgxLanes {
         return hn::Mul(hn::Mul(peak, sharpness), sharpness);
     }
 
+  private:
     /// √(α² + (1-α²) cos²θ).
     template <class D>
     static HWY_INLINE V<D> masking(D d, V<D> alpha2, V<D> cosine) {
@@ -165,8 +173,84 @@ class GgxLanes {
     double ior_;
 };
 
+/// Microfacets of any distribution and Fresnel factor, which are looked up at each call. f·cos is GGX's D times slowly
+/// varying factors.
+class MicrofacetLanes {
+  public:
+    using Ggx = GgxLanes<Fresnel::one>;
+    template <class D>
+    struct View {
+        typename Ggx::View<D> ggx;
+        V<D> alpha, masking;  // α, cosθ_o (1 + 2 Λ(θ_o))
+    };
+
+    explicit MicrofacetLanes(const GgxShape& shape) : shape_(shape), ggx_(shape) {}
+
+    template <class D>
+    HWY_INLINE View<D> view(D d, V<D> cos_o, V<D> alpha) const {
+        const auto of_ggx = ggx_.view(d, cos_o, alpha);
+        return {of_ggx, alpha, masking(d, alpha, cos_o)};
+    }
+
+    HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
+        const Floats d;
+        const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+        const HalfVector<Floats> half = {hn::Mul(sum.x, inverse), hn::Mul(sum.y, inverse), hn::Mul(sum.z, inverse),
+                                         hn::Mul(all(d, 0.5), hn::Mul(square, inverse))};
+        const auto quarter = hn::Mul(all(d, 0.5), Ggx::half_distribution(sum, view.ggx));
+        return hn::Mul(quarter, over_ndf(d, half, cos_i, view));
+    }
+
+    HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
+        return ggx_.density(sum, cos_i, view.ggx);
+    }
+
+    template <class D>
+    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
+        const auto fresnel = fresnel_of(d, shape_, half.cosine);
+        if (shape_.distribution == Microfacets::ggx) {
+            return hn::Mul(fresnel, ggx_.over_ndf(d, half, cos_i, view.ggx));
+        }
+        const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
+        const auto up = hn::Max(hn::Mul(half.z, half.z), all(d, 1e-12));
+        const auto slope2 = hn::Min(hn::Div(across, hn::Mul(view.ggx.alpha2, up)), all(d, kLargestSlope2));
+        const auto over_ggx = hn::Add(all(d, 1), slope2);
+        const auto factor = hn::Mul(hn::Mul(fresnel, cos_i), hn::Mul(over_ggx, over_ggx));
+        if (shape_.distribution == Microfacets::ashikhmin_shirley) {
+            // cosⁿθ_h ÷ the cos⁻⁴θ_h of GGX
+            const auto tangent2 = hn::Mul(slope2, view.ggx.alpha2);
+            const auto power = hn::Add(hn::Div(all(d, 1), view.ggx.alpha2), all(d, 1));
+            const auto lobe = hn::Exp(d, hn::Neg(hn::Mul(power, hn::Log1p(d, tangent2))));
+            const auto norm = hn::NegMulAdd(all(d, 0.5), view.ggx.alpha2, all(d, 1));
+            const auto pump = hn::Mul(hn::Max(half.cosine, all(d, 1e-6)), hn::Max(cos_i, view.ggx.cosine));
+            return hn::Div(hn::Mul(hn::Mul(factor, norm), lobe), pump);
+        }
+        const auto both = hn::MulAdd(view.ggx.cosine, masking(d, view.alpha, cos_i), hn::Mul(cos_i, view.masking));
+        return hn::Div(hn::Mul(hn::Add(factor, factor), hn::Exp(d, hn::Neg(slope2))), both);
+    }
+
+  private:
+    /// beckmann_masking() in lanes.
+    template <class D>
+    static HWY_INLINE V<D> masking(D d, V<D> alpha, V<D> cosine) {
+        const auto across = hn::Mul(alpha, hn::Sqrt(hn::Max(hn::Zero(d), hn::NegMulAdd(cosine, cosine, all(d, 1)))));
+        const auto a = hn::Div(cosine, hn::Max(across, all(d, 1e-30)));
+        const auto above = hn::MulAdd(hn::MulAdd(all(d, 0.396), a, all(d, -1.259)), a, all(d, 1));
+        const auto below = hn::MulAdd(all(d, 2.181), a, all(d, 3.535));
+        const auto lambda = hn::Div(hn::Mul(hn::Add(across, across), above), below);
+        return hn::Add(cosine, hn::IfThenElseZero(hn::Lt(a, all(d, kUnmasked)), lambda));
+    }
+
+    GgxShape shape_;
+    Ggx ggx_;
+};
+
 template <class Function>
 void with_lanes_of(const GgxShape& shape, const Function& function) {
+    if (shape.distribution != Microfacets::ggx) {
+        return function(MicrofacetLanes(shape));
+    }
     switch (shape.fresnel) {
         case Fresnel::one:
             return function(GgxLanes<Fresnel::one>(shape));
@@ -176,6 +260,9 @@ void with_lanes_of(const GgxShape& shape, const Function& function) {
             return function(GgxLanes<Fresnel::dip>(shape));
         case Fresnel::dielectric:
             return function(GgxLanes<Fresnel::dielectric>(shape));
+        case Fresnel::wide_dip:
+        case Fresnel::narrow_dip:
+            return function(MicrofacetLanes(shape));
     }
 }
 

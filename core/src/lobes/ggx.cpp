@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// GGX lobes, one direction at a time.
+// Lobes of microfacets, one direction at a time.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "lobes/boundary_integral.h"
+#include "lobes/microfacets.h"
 #include "lobes/refraction.h"
 #include "regions/boundary.h"
 #include "shlight/lobe_shape.h"
@@ -27,10 +28,12 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
             const double edge = 1 - cosine;
             return edge * edge * edge * edge * edge;
         }
-        case Fresnel::dip: {
-            const double edge = 1 - cosine;
-            return cosine * edge * edge * edge * edge * edge * edge;
-        }
+        case Fresnel::dip:
+            return cosine * std::pow(1 - cosine, 6);
+        case Fresnel::wide_dip:
+            return cosine * std::pow(1 - cosine, 3);
+        case Fresnel::narrow_dip:
+            return cosine * std::pow(1 - cosine, 12);
         case Fresnel::dielectric: {
             const double head_on = interface_reflectance(1, shape.ior);
             return std::max(0.0, (interface_reflectance(cosine, shape.ior) - head_on) / (1 - head_on));
@@ -55,10 +58,33 @@ double visible_share(double a2, double cos_theta_o) {
     return 0.5 / (cos_theta_o + masking(a2, cos_theta_o));
 }
 
+/// cosθ (1 + 2 Λ) of Beckmann's distribution, with Λ = 0 where tanθ < 1/(1.6 α); as a quotient it is finite for grazing
+/// angles.
+double beckmann_masking(double alpha, double cosine) {
+    const double across = alpha * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    if (cosine >= kUnmasked * across) {
+        return cosine;
+    }
+    const double a = cosine / across;
+    return cosine + 2 * across * ((0.396 * a - 1.259) * a + 1) / (2.181 * a + 3.535);
+}
+
+/// f·cos ÷ Fresnel's factor, for distributions other than GGX. tangent2: tan²θ_h; cosine: ω_i·h.
+double other_microfacets(const GgxShape& shape, double tangent2, double cosine, double cos_i, double cos_o) {
+    const double a2 = shape.alpha * shape.alpha;
+    if (shape.distribution == Microfacets::ashikhmin_shirley) {
+        const double lobe = (2 / a2 - 1) / (8 * pi) * std::exp(-(1 / a2 - 1) * std::log1p(tangent2));
+        return lobe * cos_i / (cosine * std::max(cos_i, cos_o));
+    }
+    const double spread = std::exp(-tangent2 / a2) * (1 + tangent2) * (1 + tangent2) / (pi * a2);
+    return 0.5 * spread * cos_i /
+           (cos_o * beckmann_masking(shape.alpha, cos_i) + cos_i * beckmann_masking(shape.alpha, cos_o));
+}
+
 }  // namespace
 
-/// F D G₂ / (4 cosθ_o) with D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o) = ½ / (cosθ_o √(α² + (1-α²)
-/// cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), which is finite at grazing angles.
+/// GGX has F D G₂ / (4 cosθ_o) with D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o) = ½ / (cosθ_o
+/// √(α² + (1-α²) cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), which is finite at grazing angles.
 double GgxShape::value(const Vec3d& wi, const Vec3d& wo) const {
     const double a2 = alpha * alpha;
     const Vec3d sum = wi + wo;
@@ -66,9 +92,13 @@ double GgxShape::value(const Vec3d& wi, const Vec3d& wo) const {
     if (!(square > 0)) {
         return 0;
     }
+    const double cosine = std::min(1.0, std::sqrt(square) / 2);  // ω_i·h
+    if (distribution != Microfacets::ggx) {
+        const double tangent2 = (sum.x * sum.x + sum.y * sum.y) / (sum.z * sum.z);
+        return fresnel_factor(*this, cosine) * other_microfacets(*this, tangent2, cosine, wi.z, wo.z);
+    }
     const double ratio = sharpness(a2, sum);
     const double visibility = 0.5 / (wo.z * masking(a2, wi.z) + wi.z * masking(a2, wo.z));
-    const double cosine = std::min(1.0, std::sqrt(square) / 2);  // ω_i·h
     return fresnel_factor(*this, cosine) * ratio * ratio / (pi * a2) * visibility * wi.z;
 }
 

@@ -38,7 +38,9 @@ FitGrid::Neighbours FitGrid::neighbours(double alpha) const {
         const std::size_t number = static_cast<std::size_t>(stencil.first) + k;
         found.tables[k] = &tables_.get(number, [&] {
             const double tabulated = std::exp(kFirstLog + kLogStep * static_cast<double>(number)) - kAlphaOffset;
-            return fit_table(GgxShape{tabulated, shape_.fresnel, shape_.ior}, orders_);
+            GgxShape shape = shape_;
+            shape.alpha = tabulated;
+            return fit_table(shape, orders_);
         });
     }
     return found;
@@ -59,7 +61,7 @@ std::shared_ptr<const FitGrid> fit_grid(const GgxShape& shape, int order) {
     constexpr std::size_t kRecentGrids = 16;
     static RecentValues<std::pair<GgxShape, int>, FitGrid> recent(kRecentGrids);
     const bool has_ior = shape.fresnel == Fresnel::dielectric;
-    const GgxShape key = {1, shape.fresnel, has_ior ? shape.ior : GgxShape{1}.ior};
+    const GgxShape key = {1, shape.fresnel, has_ior ? shape.ior : GgxShape{1}.ior, shape.distribution};
     return recent.get({key, order}, [&] { return std::make_shared<const FitGrid>(key, order); });
 }
 
