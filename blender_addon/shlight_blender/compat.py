@@ -55,9 +55,9 @@ def panorama_settings(lens: Any) -> Any:
 PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 # Its inputs that are not supported, with the values at which they do nothing.
 PRINCIPLED_UNSUPPORTED = (
-    {"Anisotropic": 0.0, "Sheen Weight": 0.0, "Thin Film Thickness": 0.0}
+    {"Anisotropic": 0.0, "Thin Film Thickness": 0.0}
     if IS_BLENDER_4
-    else {"Subsurface": 0.0, "Anisotropic": 0.0, "Clearcoat": 0.0, "Sheen": 0.0}
+    else {"Subsurface": 0.0, "Anisotropic": 0.0, "Clearcoat": 0.0}
 )
 # The definition of a Voronoi Texture, as `nodes.voronoi` numbers them.
 CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5

@@ -423,8 +423,9 @@ Multiplied by an expression of shlight.nodes, such as a picture, one is a Shader
 constexpr const char* kPrincipledDoc =
     R"(principled(base_color=(0.8, 0.8, 0.8), *, metallic=0.0, roughness=0.5, ior=1.5, alpha=1.0, diffuse_roughness=0.0, )"
     R"(specular_ior_level=0.5, specular_tint=(1.0, 1.0, 1.0), coat_weight=0.0, coat_roughness=0.03, coat_ior=1.5, )"
-    R"(coat_tint=(1.0, 1.0, 1.0), coat_normal=None, transmission_weight=0.0, emission_color=(1.0, 1.0, 1.0), )"
-    R"(emission_strength=0.0, several_bounces=False, at=None)
+    R"(coat_tint=(1.0, 1.0, 1.0), coat_normal=None, sheen_weight=0.0, sheen_roughness=0.5, )"
+    R"(sheen_tint=(1.0, 1.0, 1.0), transmission_weight=0.0, emission_color=(1.0, 1.0, 1.0), emission_strength=0.0, )"
+    R"(several_bounces=False, at=None)
 
 A Shader: Blender's Principled BSDF, see shlight.nodes.principled.)";
 

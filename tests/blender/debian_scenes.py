@@ -114,6 +114,19 @@ def principled(studio):
     shine_on(studio, "ShaderNodeBsdfPrincipled", Base_Color=(0.3, 0.6, 0.8), Specular=0.8)
 
 
+def satin(studio):
+    """Rough, under sheen."""
+    inputs = {"Base_Color": (0.8, 0.3, 0.2), "Specular": 0.0, "Sheen": 1.0, "Sheen_Tint": 0.7}
+    shine_on(studio, "ShaderNodeBsdfPrincipled", **inputs)
+
+
+def velvet(studio):
+    material = studio.material("ShaderNodeBsdfVelvet", Color=(0.8, 0.3, 0.2), Sigma=0.6)
+    studio.plane(material=material)
+    studio.ball(1.0, material, location=(0, 0, 1.1))
+    studio.lamp("POINT", 150, (1.5, -2, 3), shadow_soft_size=0.6)
+
+
 def translucent(studio):
     """A ball and a sheet before lamps."""
     paper = studio.material("ShaderNodeBsdfTranslucent", Color=(0.9, 0.6, 0.4))
@@ -252,8 +265,8 @@ def displaced(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, translucent, transmission, curves, noise, sky, dark, panoramic, orthographic, simplified,
-    flat_camera, coarse, displaced,
+    metal, principled, satin, velvet, translucent, transmission, curves, noise, sky, dark, panoramic, orthographic,
+    simplified, flat_camera, coarse, displaced,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

@@ -14,7 +14,7 @@ DISTRIBUTIONS = ("GGX", "MULTI_GGX")
 @pytest.mark.parametrize("distribution", DISTRIBUTIONS)
 def test_white_furnace(studio: Any, distribution: str) -> None:
     """White balls of all kinds in a white world reflect what they get; GGX loses what is reflected twice."""
-    kinds: list[dict[str, Any]] = [{"Metallic": 1.0}, {}, {"IOR": 2.5}, {"Coat_Weight": 1.0}]
+    kinds: list[dict[str, Any]] = [{"Metallic": 1.0}, {}, {"IOR": 2.5}, {"Coat_Weight": 1.0}, {"Sheen_Weight": 1.0}]
     if "Diffuse Roughness" in studio.material("ShaderNodeBsdfPrincipled").node_tree.nodes["Principled BSDF"].inputs:
         kinds.append({"Diffuse_Roughness": 1.0})
     roughnesses = (0.05, 0.3, 0.6, 1.0)

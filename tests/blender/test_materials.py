@@ -73,6 +73,7 @@ MIRRORS: list[tuple[str, dict[str, Any]]] = [
     ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "MULTI_GGX"}),
     ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0}),
     ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.2, 0.5, 0.8), "IOR": 1.8}),
+    ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "BECKMANN"}),
 ]
 MIRROR_ROUGHNESSES = (0.003, 0.0, 0.01, 0.03)
 
@@ -235,14 +236,15 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
         ("ShaderNodeBsdfToon", {}, "Toon BSDF is not supported"),
         ("ShaderNodeSubsurfaceScattering", {}, "Subsurface Scattering is not supported"),
         ("ShaderNodeBsdfAnisotropic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
-        ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, "distribution BECKMANN is not supported"),
+        ("ShaderNodeBsdfMetallic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
-        ("ShaderNodeBsdfPrincipled", {"Sheen_Weight": 0.5}, "'Sheen Weight' is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Subsurface_Weight": 0.5}, "'Subsurface Weight' is not supported"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),
     ],
 )
 def test_unsupported_shaders_are_named(studio: Any, shader: str, inputs: dict[str, Any], named: str) -> None:
+    if not hasattr(bpy.types, shader):
+        pytest.skip(f"this version of Blender has no {shader}")
     studio.area()
     studio.camera()
     studio.plane(material=studio.material(shader, name="Odd", **inputs))

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from typing import TypedDict
+
 from shlight import nodes
-from shlight.nodes import Shader
+from shlight.nodes import Shader, Vector
+from shlight.nodes.principled import Distribution
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
@@ -19,14 +22,16 @@ from .value_nodes import VALUE_NODES
 
 # Luminance with which Blender 3.4 takes the brightness out of the base colour for Specular Tint.
 TINT_LUMINANCE = (0.3, 0.6, 0.1)
+# Distributions of microfacets by Blender's names; the rest are GGX.
+DISTRIBUTIONS: dict[str, Distribution] = {"BECKMANN": "beckmann", "ASHIKHMIN_SHIRLEY": "ashikhmin_shirley"}
 
 
 # Inputs of the layered Principled BSDF, which are arguments of `nodes.principled`.
 PRINCIPLED_NUMBERS = (
     "Metallic", "Roughness", "IOR", "Alpha", "Diffuse Roughness", "Specular IOR Level", "Coat Weight",
-    "Coat Roughness", "Coat IOR", "Transmission Weight", "Emission Strength",
+    "Coat Roughness", "Coat IOR", "Sheen Weight", "Sheen Roughness", "Transmission Weight", "Emission Strength",
 )  # fmt: skip
-PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Emission Color")
+PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Sheen Tint", "Emission Color")
 
 
 def read_principled(inputs: NodeInputs) -> Shader:
@@ -68,12 +73,13 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     if transmission.constant != 0.0:
         inputs.remark_hidden_behind("'Transmission'")
     through = transmission * (1.0 - metallic)
-    if metallic.constant != 1.0 and base.constant != (0.0, 0.0, 0.0) and transmission.constant != 1.0:
-        text = "the diffuse part is drawn as Diffuse BSDF, without Principled BSDF's darker and brighter edges"
-        inputs.remark(text, Effect.SLIGHT)
-    surface = nodes.lambert(base * (1.0 - metallic) * (1.0 - transmission), normal=at)
+    diffuse = (1.0 - metallic) * (1.0 - transmission)
+    surface = nodes.disney_diffuse(base * diffuse, roughness, at=at)
     luminance = sum((c * w for c, w in zip(base, TINT_LUMINANCE, strict=True)), start=number(0.0))
     hue = Color(*(nodes.values.select(luminance > 0.0, c / luminance, 1.0) for c in base))
+    sheen, sheen_tint = maximum(inputs.number("Sheen"), 0.0), clamp(inputs.number("Sheen Tint"))
+    if sheen.constant != 0.0:
+        surface += nodes.disney_sheen((hue * sheen_tint + (1.0 - sheen_tint)) * sheen * diffuse, at=at)
     f0 = (hue * tint + (1.0 - tint)) * (0.08 * specular) * (1.0 - metallic) + base * metallic
     f0 = Color(*(clamp(c) for c in f0))
     ior = 2.0 / (1.0 - sqrt(nodes.values.minimum(0.08 * specular, 0.99))) - 1.0
@@ -102,6 +108,13 @@ def _glass_of_sum(inputs: NodeInputs, base: Color, *, hue: Color, roughness: Val
     return Shader(lobes) * front + Shader(refractions=(Refraction(color(base), inner * inner, ior, at),))
 
 
+def _sheen(inputs: NodeInputs) -> Shader:
+    """Shader of a Sheen BSDF, or of a Velvet BSDF, which has no distribution and another name for its roughness."""
+    made = nodes.microfibre if getattr(inputs.node, "distribution", "") == "MICROFIBER" else nodes.velvet
+    width = inputs.number("Sigma" if inputs.node.type == "BSDF_VELVET" else "Roughness")
+    return made(inputs.color("Color"), width, at=inputs.linked_vector("Normal"))
+
+
 def positive(c: nodes.Vector) -> Color:
     """A colour without what is negative of it."""
     return Color(*(maximum(component, 0.0) for component in c))
@@ -113,30 +126,51 @@ def _diffuse(inputs: NodeInputs) -> Shader:
     )
 
 
+class _Microfacets(TypedDict):
+    """Arguments of `shlight.nodes` that a node's distribution of microfacets decides."""
+
+    distribution: Distribution
+    several_bounces: bool
+    at: Vector | None
+
+
+def _microfacets(inputs: NodeInputs) -> _Microfacets:
+    own = inputs.node.distribution
+    distribution: Distribution = DISTRIBUTIONS.get(own, "ggx")
+    return {
+        "distribution": distribution,
+        "several_bounces": own == "MULTI_GGX",
+        "at": inputs.linked_vector("Normal"),
+    }
+
+
 def _roughness(inputs: NodeInputs) -> Value:
     """The roughness of a node with a distribution of microfacets."""
-    distribution = inputs.node.distribution
-    roughness = number(0.0) if distribution == "SHARP" else inputs.number("Roughness")
-    if distribution not in {"GGX", "MULTI_GGX", "SHARP"} and roughness.constant != 0.0:
-        # All distributions end in the same mirror.
-        inputs.remark(f"distribution {distribution} is not supported; GGX is used")
-    return roughness
+    return number(0.0) if inputs.node.distribution == "SHARP" else inputs.number("Roughness")
 
 
 def _glossy(inputs: NodeInputs) -> Shader:
     inputs.ignore_unless("Anisotropy", 0.0)
-    several = inputs.node.distribution == "MULTI_GGX"
-    at = inputs.linked_vector("Normal")
-    return nodes.glossy(inputs.color("Color"), _roughness(inputs), several_bounces=several, at=at)
+    return nodes.glossy(inputs.color("Color"), _roughness(inputs), **_microfacets(inputs))
+
+
+def _metallic(inputs: NodeInputs) -> Shader:
+    inputs.ignore_unless("Anisotropy", 0.0)
+    roughness, rest = inputs.number("Roughness"), _microfacets(inputs)
+    if inputs.node.fresnel_type == "F82":
+        return nodes.metallic(inputs.color("Base Color"), inputs.color("Edge Tint"), roughness, **rest)
+    return nodes.conductor(inputs.color("IOR"), inputs.color("Extinction"), roughness, **rest)
 
 
 def _glass(inputs: NodeInputs) -> Shader:
     inputs.remark_hidden_behind(inputs.node.bl_label)
-    tint, ior, at = inputs.color("Color"), inputs.number("IOR"), inputs.linked_vector("Normal")
-    roughness = _roughness(inputs)
+    tint, ior, roughness = inputs.color("Color"), inputs.number("IOR"), _roughness(inputs)
+    bends = inputs.reader.surroundings.light_bounces and roughness.constant != 0.0
+    if bends and inputs.node.distribution in DISTRIBUTIONS:
+        inputs.remark(f"what goes through is bent by GGX, not by {inputs.node.distribution}", Effect.SLIGHT)
     if inputs.node.type == "BSDF_REFRACTION":
-        return nodes.refraction(tint, roughness, ior, at=at)
-    return nodes.glass(tint, roughness, ior, several_bounces=inputs.node.distribution == "MULTI_GGX", at=at)
+        return nodes.refraction(tint, roughness, ior, at=inputs.linked_vector("Normal"))
+    return nodes.glass(tint, roughness, ior, **_microfacets(inputs))
 
 
 def emission(inputs: NodeInputs) -> Shader:
@@ -158,8 +192,11 @@ SHADERS: dict[str, ReadNode] = {
     "BSDF_DIFFUSE": _diffuse,
     "BSDF_GLASS": _glass,
     "BSDF_GLOSSY": _glossy,
+    "BSDF_METALLIC": _metallic,
     "BSDF_PRINCIPLED": read_principled,
     "BSDF_REFRACTION": _glass,
+    "BSDF_SHEEN": _sheen,
+    "BSDF_VELVET": _sheen,
     "BSDF_TRANSLUCENT": lambda i: nodes.translucent(positive(i.color("Color")), i.linked_vector("Normal")),
     "BSDF_TRANSPARENT": lambda inputs: nodes.transparent(inputs.color("Color")),
     "EMISSION": emission,

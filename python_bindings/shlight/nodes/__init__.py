@@ -7,6 +7,8 @@ What these functions return stands where a constant stood: `Bsdf.lambert(nodes.i
 from shlight.nodes import colors, inputs, mathematics, rays, values
 from shlight.nodes.cells import Gabor, Voronoi, gabor, voronoi
 from shlight.nodes.colors import mix_color
+from shlight.nodes.disney import disney_diffuse, disney_sheen
+from shlight.nodes.fabrics import microfibre, velvet
 from shlight.nodes.inputs import (
     attribute,
     backfacing,
@@ -19,6 +21,7 @@ from shlight.nodes.inputs import (
     uv,
 )
 from shlight.nodes.mathematics import map_range, mapping
+from shlight.nodes.metals import conductor, metallic
 from shlight.nodes.noises import musgrave, noise, wave
 from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.patterns import Bricks, bricks, magic
@@ -52,6 +55,9 @@ __all__ = [
     "bump",
     "clamp",
     "colors",
+    "conductor",
+    "disney_diffuse",
+    "disney_sheen",
     "emission",
     "equal",
     "gabor",
@@ -67,6 +73,8 @@ __all__ = [
     "mapping",
     "mathematics",
     "maximum",
+    "metallic",
+    "microfibre",
     "minimum",
     "mix",
     "mix_color",
@@ -90,6 +98,7 @@ __all__ = [
     "transparent",
     "uv",
     "values",
+    "velvet",
     "voronoi",
     "wave",
     "wavelength",

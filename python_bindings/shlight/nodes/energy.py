@@ -1,29 +1,38 @@
 # SPDX-License-Identifier: MIT
-"""The energy that GGX microfacets reflect, over roughness, cosine of the view and index of refraction.
+"""The energy that GGX microfacets and fibres reflect, over roughness, cosine of the view and index of refraction.
 
 Cycles layers and brightens its lobes by tables of these sizes, between whose entries it interpolates linearly, and so
-is it done here. The tables are kept in `energy.npz`, since integrating them takes a second or two; shlight_tools.energy
-does it.
+is it done here. Tables of GGX are kept in `energy.npz`, since integrating them takes a second or two;
+shlight_tools.energy does it. Those of sheen are fits of Zeltner, Burley & Chiang 2022 to simulated fibres, of which
+shlight_tools.sheen measures what Cycles draws; they are kept in `sheen.npz`.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shlight.nodes.program import Table
 from shlight.nodes.values import Number, Value, clamp, number, operation, sqrt
 
 KEPT = Path(__file__).with_name("energy.npz")
+KEPT_SHEEN = Path(__file__).with_name("sheen.npz")
+LEAST_SHEEN = 1e-3  # roughness
+SHEEN_STEPS = np.linspace(0.0, 1.0, 32)  # of roughness and of cosine
 
 
 @lru_cache(maxsize=1)
 def tables() -> dict[str, Table]:
-    """The tables "albedo", "mean_albedo" and "rise"."""
-    with np.load(KEPT) as kept:
-        return {name: Table(kept[name]) for name in kept.files}
+    """The tables "albedo", "mean_albedo", "rise" and "sheen"."""
+    with np.load(KEPT) as kept, np.load(KEPT_SHEEN) as kept_sheen:
+        return {
+            **{name: Table(kept[name]) for name in kept.files},
+            "sheen": Table(kept_sheen["albedo"]),
+        }
 
 
 def albedo(roughness: Number, cosine: Number) -> Value:
@@ -41,3 +50,18 @@ def rise(roughness: Number, cosine: Number, ior: Number) -> Value:
     index = number(ior)
     parameter = sqrt(abs((index - 1.0) / (index + 1.0)))
     return operation("table3", roughness, cosine, clamp(parameter), data=tables()["rise"])
+
+
+def sheen(roughness: Number, cosine: Number) -> Value:
+    """Albedo of fibres at a view."""
+    return operation("table2", clamp(number(roughness), LEAST_SHEEN), cosine, data=tables()["sheen"])
+
+
+def sheen_transform(name: Literal["a", "b"], roughness: float, cosines: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The number a or b of the matrix ((a, 0, b), (0, a, 0), (0, 0, 1)) that turns fibres' lobe into a cosine's."""
+    with np.load(KEPT_SHEEN) as kept:
+        table = kept[name].astype(np.float64)
+    place = min(max(roughness, LEAST_SHEEN), 1.0) * (len(SHEEN_STEPS) - 1)
+    low = min(int(place), len(SHEEN_STEPS) - 2)
+    of_steps = table[:, low] + (place - low) * (table[:, low + 1] - table[:, low])
+    return np.interp(cosines, SHEEN_STEPS, of_steps)

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import math
+from typing import Literal, get_args
 
 from shlight._arrays import checked_flag
 from shlight.nodes import energy
+from shlight.nodes.fabrics import microfibre, microfibre_albedo
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
 from shlight.nodes.values import (
@@ -21,6 +23,7 @@ from shlight.nodes.values import (
     length,
     maximum,
     minimum,
+    normalize,
     number,
     operation,
     reflectance,
@@ -34,8 +37,17 @@ IOR_NODES = (1.0 + 1e-4, 1.1, 1.25, 1.45, 1.7, 2.1, 2.8, 4.0, 8.0, 20.0)
 # The cosine at which a tint of metals' edges is given, and what it is multiplied with there.
 EDGE = 6.0 / 7.0
 
+Distribution = Literal["ggx", "beckmann", "ashikhmin_shirley"]  # of microfacets' normals
 
-def _mix(a: Vector, b: Varying, share: Varying) -> Color:
+
+def checked_distribution(distribution: Distribution) -> Distribution:
+    """The distribution. Raises ValueError if there is none of this name."""
+    if distribution not in get_args(Distribution):
+        raise ValueError(f"distribution must be one of {', '.join(get_args(Distribution))}, got {distribution!r}")
+    return distribution
+
+
+def mixed(a: Vector, b: Varying, share: Varying) -> Color:
     return color(a + (color(b) - a) * share)
 
 
@@ -43,7 +55,7 @@ def _largest(c: Vector) -> Value:
     return maximum(maximum(c.x, c.y), c.z)
 
 
-def _clamped(c: Vector) -> Color:
+def clamped(c: Vector) -> Color:
     return Color(*(clamp(component) for component in c))
 
 
@@ -77,7 +89,7 @@ def head_on(ior: Number) -> Value:
     return root * root
 
 
-def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
+def bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
     """The factor by which multiple scattering between microfacets brightens a lobe (Kulla & Conty 2017)."""
     own, mean = energy.albedo(roughness, cosine), energy.mean_albedo(roughness)
     again = mean_fresnel * mean / (1.0 - mean_fresnel * (1.0 - mean))
@@ -85,12 +97,18 @@ def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
 
 
 def rising_lobes(
-    weight: Vector, ior: Value, alpha: Value, at: Vector | None, *, several_bounces: bool = False
+    weight: Vector,
+    ior: Value,
+    alpha: Value,
+    at: Vector | None,
+    *,
+    several_bounces: bool = False,
+    distribution: Distribution = "ggx",
 ) -> tuple[Lobe, ...]:
     """Lobes of the rise of Fresnel's curve; of a varying index by interpolation."""
 
     def lobe(own: Color, of_ior: float) -> Lobe:
-        return Lobe("ggx_dielectric", own, alpha, at, of_ior, several_bounces)
+        return Lobe(f"{distribution}_dielectric", own, alpha, at, of_ior, several_bounces)
 
     if ior.constant is not None:
         return (lobe(color(weight), max(ior.constant, 1.0 + 1e-6)),)
@@ -106,7 +124,14 @@ def rising_lobes(
 
 
 def _dielectric(
-    weight: Vector, f0: Color, ior: Value, roughness: Value, at: Vector, *, several_bounces: bool
+    weight: Vector,
+    f0: Color,
+    ior: Value,
+    roughness: Value,
+    at: Vector,
+    *,
+    several_bounces: bool,
+    distribution: Distribution = "ggx",
 ) -> tuple[tuple[Lobe, ...], Color]:
     """Lobes of a dielectric interface, and the share of light that it lets through."""
     alpha = roughness * roughness
@@ -116,49 +141,63 @@ def _dielectric(
     if several_bounces:
         mean = (ior - 1.0) / (4.08567 + 1.00071 * ior)
         base = head_on(ior)
-        mean_fresnel = _mix(f0, 1.0, clamp((mean - base) / (1.0 - base)))
-        brighter = _bounces(roughness, cosine, mean_fresnel)
+        mean_fresnel = mixed(f0, 1.0, clamp((mean - base) / (1.0 - base)))
+        brighter = bounces(roughness, cosine, mean_fresnel)
         own = color(own * brighter)
         dimmed = color(brighter * energy.albedo(roughness, cosine))
-    several = {"several_bounces": several_bounces}
     lobes = (
-        Lobe("ggx", color(own * f0), alpha, at, **several),
-        *rising_lobes(own * (1.0 - f0), ior, alpha, at, **several),
+        Lobe(distribution, color(own * f0), alpha, at, several_bounces=several_bounces),
+        *rising_lobes(own * (1.0 - f0), ior, alpha, at, several_bounces=several_bounces, distribution=distribution),
     )
-    reflected = _mix(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
+    reflected = mixed(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
     return lobes, color(clamp(1.0 - _largest(reflected)))
 
 
-def _metal(
-    weight: Vector, f0: Color, edge_tint: Color, roughness: Value, at: Vector, *, several_bounces: bool
+def metal_lobes(
+    weight: Vector,
+    f0: Color,
+    edge_tint: Color,
+    roughness: Value,
+    at: Vector,
+    *,
+    several_bounces: bool,
+    distribution: Distribution = "ggx",
 ) -> tuple[Lobe, ...]:
     """Lobes of a metal: Schlick's curve, less what a tint takes away near 82° (Kutz et al. 2021)."""
     alpha = roughness * roughness
-    schlick = _mix(f0, 1.0, EDGE**5)
+    schlick = mixed(f0, 1.0, EDGE**5)
     dip = color(schlick * (7.0 / EDGE**6) * (1.0 - edge_tint))
     own = color(weight * 1.0)
     if several_bounces:
         cosine = clamp(dot(towards_viewer(), at), 1e-4)
-        own = color(own * _bounces(roughness, cosine, color(_mix(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
+        own = color(own * bounces(roughness, cosine, color(mixed(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
     several = {"several_bounces": several_bounces}
     lobes = (
-        Lobe("ggx", color(own * f0), alpha, at, **several),
-        Lobe("ggx_schlick", color(own * (1.0 - f0)), alpha, at, **several),
+        Lobe(distribution, color(own * f0), alpha, at, **several),
+        Lobe(f"{distribution}_schlick", color(own * (1.0 - f0)), alpha, at, **several),
     )
     if dip.constant == (0.0, 0.0, 0.0):
         return lobes
-    return (*lobes, Lobe("ggx_dip", color(-(own * dip)), alpha, at, **several))
+    return (*lobes, Lobe(f"{distribution}_dip", color(-(own * dip)), alpha, at, **several))
 
 
-def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, at: Vector | None = None) -> Shader:
-    """A GGX lobe without Fresnel's factor: Blender's Glossy BSDF."""
+def glossy(
+    tint: Varying,
+    roughness: Number,
+    *,
+    several_bounces: bool = False,
+    distribution: Distribution = "ggx",
+    at: Vector | None = None,
+) -> Shader:
+    """Microfacets without Fresnel's factor: Blender's Glossy BSDF. several_bounces: of GGX alone."""
+    kind = checked_distribution(distribution)
     c = Color(*(maximum(component, 0.0) for component in color(tint, "tint")))
     n = reflecting_normal(normal() if at is None else at)
     r = clamp(number(roughness, "roughness"))
     weight = c
     if several_bounces:
-        weight = color(c * _bounces(r, clamp(dot(towards_viewer(), n), 1e-4), _clamped(c)))
-    return Shader((Lobe("ggx", weight, r * r, n, several_bounces=several_bounces),))
+        weight = color(c * bounces(r, clamp(dot(towards_viewer(), n), 1e-4), clamped(c)))
+    return Shader((Lobe(kind, weight, r * r, n, several_bounces=several_bounces),))
 
 
 def _oren_nayar_rise(cosine: Value) -> Value:
@@ -185,7 +224,7 @@ def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> S
     b = rough * a
     own = a * math.pi + b * _oren_nayar_rise(maximum(dot(towards_viewer(), n), 0.0))
     mean = a * math.pi + b * ((2.0 * math.pi - 5.6) / 3.0)
-    saturated = _clamped(rho)
+    saturated = clamped(rho)
     again = saturated * saturated * ((mean / (1.0 - mean)) / math.pi) / (1.0 - saturated * (1.0 - mean))
     varies = select(rough > 0.0, 1.0, 0.0)
     return Shader(
@@ -197,30 +236,51 @@ def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> S
     )
 
 
-def _interface(weight: Color, f0: Color, ior: Value, roughness: Value, at: Vector, *, several_bounces: bool) -> Shader:
+def _interface(
+    weight: Color,
+    f0: Color,
+    ior: Value,
+    roughness: Value,
+    at: Vector,
+    *,
+    several_bounces: bool,
+    distribution: Distribution = "ggx",
+) -> Shader:
     """The reflection of a transparent body's front."""
     front = color(weight * (1.0 - backfacing()))
-    lobes, _ = _dielectric(front, f0, maximum(ior, 1.0 / ior), roughness, at, several_bounces=several_bounces)
+    index = maximum(ior, 1.0 / ior)
+    lobes, _ = _dielectric(front, f0, index, roughness, at, several_bounces=several_bounces, distribution=distribution)
     return Shader(lobes)
 
 
 def glass(
-    tint: Varying, roughness: Number, ior: Number = 1.5, *, several_bounces: bool = False, at: Vector | None = None
+    tint: Varying,
+    roughness: Number,
+    ior: Number = 1.5,
+    *,
+    several_bounces: bool = False,
+    distribution: Distribution = "ggx",
+    at: Vector | None = None,
 ) -> Shader:
-    """A transparent body: Blender's Glass BSDF. It shows what is behind where light bounces."""
-    c = _clamped(color(tint, "tint"))
+    """A transparent body: Blender's Glass BSDF. It shows what is behind where light bounces.
+
+    What goes through is bent by GGX's microfacets, whatever the distribution.
+    """
+    kind = checked_distribution(distribution)
+    c = clamped(color(tint, "tint"))
     r = clamp(number(roughness, "roughness"))
     index = maximum(number(ior, "ior"), 1e-5)
     n = reflecting_normal(normal() if at is None else at)
     through = Shader(refractions=(Refraction(c, r * r, index, at),))
-    return _interface(c, color(head_on(index)), index, r, n, several_bounces=several_bounces) + through
+    several = {"several_bounces": several_bounces}
+    return _interface(c, color(head_on(index)), index, r, n, **several, distribution=kind) + through
 
 
 def refraction(tint: Varying, roughness: Number, ior: Number = 1.5, *, at: Vector | None = None) -> Shader:
     """The light that goes through an interface alone: Blender's Refraction BSDF."""
     r = clamp(number(roughness, "roughness"))
     index = maximum(number(ior, "ior"), 1e-5)
-    return Shader(refractions=(Refraction(_clamped(color(tint, "tint")), r * r, index, at, reflects=False),))
+    return Shader(refractions=(Refraction(clamped(color(tint, "tint")), r * r, index, at, reflects=False),))
 
 
 def principled(
@@ -238,25 +298,28 @@ def principled(
     coat_ior: Number = 1.5,
     coat_tint: Varying = (1.0, 1.0, 1.0),
     coat_normal: Vector | None = None,
+    sheen_weight: Number = 0.0,
+    sheen_roughness: Number = 0.5,
+    sheen_tint: Varying = (1.0, 1.0, 1.0),
     transmission_weight: Number = 0.0,
     emission_color: Varying = (1.0, 1.0, 1.0),
     emission_strength: Number = 0.0,
     several_bounces: bool = False,
     at: Vector | None = None,
 ) -> Shader:
-    """Blender's Principled BSDF, without sheen, anisotropy and thin film.
+    """Blender's Principled BSDF, without anisotropy and thin film.
 
     Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
     its normal. Raises ValueError naming an argument that is not finite.
     """
     base = Color(*(maximum(component, 0.0) for component in color(base_color, "base_color")))
-    f0_of_metal = _clamped(base)
+    f0_of_metal = clamped(base)
     metal = clamp(number(metallic, "metallic"))
     rough = clamp(number(roughness, "roughness"))
     index = maximum(number(ior, "ior"), 1e-5)
     tint = Color(*(maximum(component, 0.0) for component in color(specular_tint, "specular_tint")))
     opaque = clamp(number(alpha, "alpha"))
-    several = {"several_bounces": checked_flag("several_bounces", several_bounces)}
+    several = checked_flag("several_bounces", several_bounces)
     diffuse_width = number(diffuse_roughness, "diffuse_roughness")
     coat_width, coat_color = number(coat_roughness, "coat_roughness"), color(coat_tint, "coat_tint")
     at = None if at is None else vector(at, "at")
@@ -266,9 +329,18 @@ def principled(
     result = transparent(1.0 - opaque)
     weight = color(opaque)
     coat = maximum(number(coat_weight, "coat_weight"), 0.0)
+    sheen = maximum(number(sheen_weight, "sheen_weight"), 0.0)
+    sheen_color = Color(*(maximum(c, 0.0) for c in color(sheen_tint, "sheen_tint")))
+    sheen_width = clamp(number(sheen_roughness, "sheen_roughness"))
+    coat_smooth = normal() if coat_normal is None else vector(coat_normal, "coat_normal")
+    if sheen.constant != 0.0:
+        sheen_at = None if at is None and coat_normal is None else normalize(n + (coat_smooth - n) * clamp(coat))
+        result += microfibre(sheen_color * sheen, sheen_width, at=sheen_at) * weight
+        reflected = microfibre_albedo(sheen_width, normal() if sheen_at is None else sheen_at)
+        weight = color(weight * clamp(1.0 - _largest(sheen_color) * sheen * reflected))
     if coat.constant != 0.0:
         coat_index = maximum(number(coat_ior, "coat_ior"), 1.0)
-        coat_at = reflecting_normal(normal() if coat_normal is None else vector(coat_normal, "coat_normal"))
+        coat_at = reflecting_normal(coat_smooth)
         lobes, passed = _dielectric(
             weight * coat, color(head_on(coat_index)), coat_index, clamp(coat_width), coat_at, several_bounces=True
         )
@@ -282,13 +354,13 @@ def principled(
 
     if metal.constant != 0.0:
         edge = Color(*(minimum(component, 1.0) for component in tint))
-        result += Shader(_metal(weight * metal, f0_of_metal, edge, rough, glossy_normal, **several))
+        result += Shader(metal_lobes(weight * metal, f0_of_metal, edge, rough, glossy_normal, several_bounces=several))
         weight = color(weight * (1.0 - metal))
     through = clamp(number(transmission_weight, "transmission_weight"))
     if through.constant != 0.0:
-        f0 = _clamped(tint * head_on(index))
+        f0 = clamped(tint * head_on(index))
         own = color(weight * through)
-        result += _interface(own, f0, index, rough, glossy_normal, **several)
+        result += _interface(own, f0, index, rough, glossy_normal, several_bounces=several)
         through_tint = Color(*(sqrt(clamp(component)) for component in base))
         result += Shader(refractions=(Refraction(color(own * through_tint), rough * rough, index, at),))
         weight = color(weight * (1.0 - through))
@@ -302,8 +374,8 @@ def principled(
         index = (1.0 + root) / (1.0 - root)
     index = maximum(index, 1.0 / index)
     if index.constant != 1.0:
-        f0 = _clamped(tint * facing)
-        lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, **several)
+        f0 = clamped(tint * facing)
+        lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, several_bounces=several)
         result += Shader(lobes)
         weight = color(weight * passed)
     return result + oren_nayar(base, diffuse_width, at=at) * weight
@@ -316,4 +388,4 @@ def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:
     cosine = dot(towards_viewer(), at)
     inside = sqrt(1.0 - (1.0 - cosine * cosine) / (index * index))
     passed = Color(*(operation("power", component, 1.0 / inside) for component in tint))
-    return _mix(color(1.0), passed, coat)
+    return mixed(color(1.0), passed, coat)

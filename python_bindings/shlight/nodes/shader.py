@@ -38,11 +38,12 @@ BUMP = math.radians(6.0)
 class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
-    kind: str | _core.Bsdf  # "lambert", "ggx" with Fresnel factor 1, or the part of it that rises towards grazing
-    # angles: "ggx_schlick", "ggx_dielectric"; "ggx_dip", "bumped_lambert", "oren_nayar", "oren_nayar_loss",
-    # "translucent"; or one lobe of a Bsdf
+    # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; one lobe of a Bsdf; or microfacets,
+    # "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel factor 1, and the same with "_schlick" or "_dielectric" for
+    # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks
+    kind: str | _core.Bsdf
     weight: Color
-    alpha: Value | None = None  # roughness², of GGX
+    alpha: Value | None = None  # roughness², of microfacets
     normal: Vector | None = None  # None: the smooth one
     ior: float = 1.5  # of "ggx_dielectric"
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other

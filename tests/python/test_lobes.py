@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Lobes of shlight.nodes, on a plane in parallel views, against their formulas and cubature of these."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import shlight
+from shlight import nodes
+from shlight.nodes import energy, metals
+from shlight.nodes.shader import Lobe, Shader
+from shlight.nodes.values import color, number
+
+Doubles = NDArray[np.float64]
+VIEW = np.array([math.sin(0.9), 0.0, math.cos(0.9)])
+LIGHTS = np.array([[-math.sin(0.8), 0.1, math.cos(0.8)], [0.5, 0.4, 0.6], [-0.1, -0.95, 0.2]])
+LIGHTS /= np.linalg.norm(LIGHTS, axis=1, keepdims=True)
+
+
+def radiance(shader: Any, sun: Doubles | None, angle: float = 0.0) -> Any:
+    """The radiance towards VIEW of a plane under a sun of irradiance 1, or in a world of radiance 1."""
+    scene = shlight.Scene()
+    corners = np.array([[-9.0, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]])
+    uvs = np.full((4, 2), 0.5)
+    scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], uvs=uvs, bsdf=shader)
+    if sun is None:
+        scene.set_environment(np.ones((8, 16, 3)), visible=False)
+    else:
+        scene.add_sun_light(-sun, angle, (1.0, 1.0, 1.0))
+    pose = np.eye(4)
+    pose[:3, :3] = np.stack([[0, 1, 0], np.cross(VIEW, [0, 1, 0]), VIEW], axis=1)
+    pose[:3, 3] = 5 * VIEW
+    scene.set_camera(pose, 0.002)
+    image = shlight.render(scene, 1, 1, min_samples=4, max_samples=4, shadow_rays=0, max_bounces=0, tolerance=1e-4)
+    return image[0, 0, :3].astype(np.float64)
+
+
+def in_cone(axis: Doubles, angle: float) -> tuple[Doubles, Doubles]:
+    """Directions (n, 3) of an even grid over a cone of whole angle `angle`, and each one's solid angle."""
+    steps, turns = 200, 400
+    z = 1 - (1 - math.cos(angle / 2)) * (np.arange(steps) + 0.5) / steps
+    phi = 2 * math.pi * (np.arange(turns) + 0.5) / turns
+    x = np.cross(axis, [0.3, 0.5, 0.8])
+    x /= np.linalg.norm(x)
+    s = np.sqrt(1 - z * z)[:, None]
+    across = np.cos(phi)[:, None] * x + np.sin(phi)[:, None] * np.cross(axis, x)
+    ways = (s[..., None] * across + z[:, None, None] * axis).reshape(-1, 3)
+    return ways, np.full(len(ways), 2 * math.pi * (1 - math.cos(angle / 2)) / len(ways))
+
+
+def reflected(f: Callable[[Doubles], Doubles], sun: Doubles, angle: float) -> float:
+    """∫ f·cos over a cone of irradiance 1 at right angles."""
+    if angle == 0:
+        return float(f(sun[None])[0])
+    ways, share = in_cone(sun, angle)
+    whole = math.pi * math.sin(angle / 2) ** 2
+    return float((np.where(ways[:, 2] > 0, f(ways), 0.0) * share).sum() / whole)
+
+
+def fresnel(factor: str, c: Doubles) -> Doubles:
+    return {
+        "": np.ones_like(c),
+        "_schlick": (1 - c) ** 5,
+        "_dip": c * (1 - c) ** 6,
+        "_wide_dip": c * (1 - c) ** 3,
+        "_narrow_dip": c * (1 - c) ** 12,
+    }[factor]
+
+
+def microfacets(distribution: str, factor: str, alpha: float, light: Doubles) -> Doubles:
+    """f·cos, with Λ as in Heitz 2014 and Walter et al. 2007, and Ashikhmin & Shirley's Eq. 4 without Fresnel's term."""
+    light = np.where(light[:, 2:] > 0, light, [[0, 0, 1]])
+    half = light + VIEW
+    half /= np.linalg.norm(half, axis=1, keepdims=True)
+    c, cos_h = half @ VIEW, half[:, 2]
+    if distribution == "ashikhmin_shirley":
+        n = 2 / alpha**2 - 2
+        lobe = (n + 1) / (8 * math.pi) * cos_h**n / (c * np.maximum(light[:, 2], VIEW[2]))
+        return fresnel(factor, c) * lobe * light[:, 2]
+    tan2 = 1 / cos_h**2 - 1
+    if distribution == "beckmann":
+        d = np.exp(-tan2 / alpha**2) / (math.pi * alpha**2 * cos_h**4)
+    else:
+        d = alpha**2 / (math.pi * cos_h**4 * (alpha**2 + tan2) ** 2)
+
+    def hidden(cosine: Doubles) -> Doubles:
+        slope = alpha * np.sqrt(1 / cosine**2 - 1)
+        if distribution == "ggx":
+            return np.asarray((np.sqrt(1 + slope**2) - 1) / 2)
+        a = 1 / np.maximum(slope, 1e-9)
+        return np.where(a < 1.6, (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a), 0.0)
+
+    seen = 1 / (1 + hidden(light[:, 2]) + hidden(VIEW[2:]))
+    return np.asarray(fresnel(factor, c) * d * seen / (4 * VIEW[2]))
+
+
+FACTORS = ("", "_schlick", "_dip", "_wide_dip", "_narrow_dip")
+KINDS = [
+    *itertools.product(("beckmann", "ashikhmin_shirley"), FACTORS),
+    *itertools.product(("ggx",), FACTORS[3:]),
+]
+
+
+@pytest.mark.parametrize(("distribution", "factor"), KINDS)
+def test_microfacets_are_their_formula(distribution: str, factor: str) -> None:
+    """Without extent the light shows f·cos; a large one, its integral; whether the width varies or not."""
+    strength = 1.0 if factor in ("", "_schlick") else 100.0
+    for alpha, sun, angle in itertools.product((0.09, 1.0), LIGHTS[:2], (0.0, 1.0)):
+        truth = strength * reflected(lambda ways, a=alpha: microfacets(distribution, factor, a, ways), sun, angle)
+        for width in (number(alpha), nodes.uv().x * (2 * alpha)):
+            found = radiance(Shader((Lobe(distribution + factor, color(strength), width),)), sun, angle)
+            assert np.abs(found - truth).max() <= 2e-3 * truth + 2e-5, (alpha, sun, angle)
+
+
+def sheen_value(roughness: float, light: Doubles) -> Doubles:
+    a, b = (float(energy.sheen_transform(name, roughness, VIEW[2:])[0]) for name in ("a", "b"))
+    x, y, z = light.T
+    return np.asarray(z / math.pi * (a / ((a * x + b * z) ** 2 + (a * y) ** 2 + z * z)) ** 2)
+
+
+@pytest.mark.parametrize("roughness", [0.4, 0.6, 1.0])
+def test_microfibres_are_a_transformed_cosine(roughness: float) -> None:
+    share = radiance(nodes.microfibre(1.0, roughness), None)[0]
+    assert share <= 1 + 1e-3
+    of_roughness = [np.interp(roughness, energy.SHEEN_STEPS, row) for row in energy.tables()["sheen"].values]
+    albedo = float(np.interp(VIEW[2], energy.SHEEN_STEPS, of_roughness))
+    assert share == pytest.approx(albedo, rel=5e-3)
+    for sun, angle in itertools.product(LIGHTS, (0.0, 1.0)):
+        truth = albedo * reflected(lambda ways: sheen_value(roughness, ways), sun, angle)
+        for width, error in ((number(roughness), 0.01), (nodes.uv().x * (2 * roughness), 0.03)):
+            found = radiance(nodes.microfibre(1.0, width), sun, angle)[0]
+            assert abs(found - truth) <= error * truth + 1e-3 * albedo, (sun, angle)
+
+
+def test_the_parts_of_disneys_diffuse_reflection() -> None:
+    for roughness, sun in itertools.product((0.0, 0.5, 1.0), LIGHTS):
+        light, view = (1 - sun[2]) ** 5, (1 - VIEW[2]) ** 5
+        retro = roughness * (1 + sun @ VIEW)
+        f = (1 - light / 2) * (1 - view / 2) + retro * (light + view + light * view * (retro - 1))
+        found = radiance(nodes.disney_diffuse(0.7, roughness), sun)
+        np.testing.assert_allclose(found, 0.7 * f * sun[2] / math.pi, rtol=2e-3)
+        cosine = math.sqrt((1 + sun @ VIEW) / 2)
+        np.testing.assert_allclose(radiance(nodes.disney_sheen(0.7), sun), 0.7 * (1 - cosine) ** 5 * sun[2], atol=1e-4)
+
+
+@pytest.mark.parametrize(("n", "k"), [(0.18, 3.42), (1.37, 1.77), (2.76, 3.87), (1.1, 6.6), (0.0, 1.0)])
+def test_a_conductors_curve_is_fresnels(n: float, k: float) -> None:
+    """Against the equations with complex cosines, which hold for any n and k; the usual form leaves out the bending."""
+    cosines = np.linspace(0.05, 1, 96)
+    index = complex(n, k)
+    inside = np.sqrt(1 - (1 - cosines**2) / index**2 + 0j)
+    s = (cosines - index * inside) / (cosines + index * inside)
+    p = (index * cosines - inside) / (index * cosines + inside)
+    exact = (abs(s) ** 2 + abs(p) ** 2) / 2
+    near = [metals.reflectance(float(c), color(n), color(k)).constant for c in cosines]
+    assert np.abs(np.array(near)[:, 0] - exact).max() <= (0.03 if n * n + k * k > 4 else 1.0)
+    known = [metals.reflectance(float(c), color(n), color(k)).constant for c in metals.COSINES]
+    shares = metals.shares_of_known() @ np.array(known)[:, 0]
+    made = sum(share * fresnel(factor, cosines) for share, factor in zip(shares, metals.FACTORS, strict=True))
+    assert np.abs(made - np.array(near)[:, 0]).max() <= 3e-3
+
+
+def test_metals_reflect_no_more_than_they_get() -> None:
+    for several, roughness in itertools.product((False, True), (0.3, 0.6, 1.0)):
+        for shader in (
+            nodes.metallic(1.0, 1.0, roughness, several_bounces=several),
+            nodes.conductor((0.0, 0.2, 1.0), (1.0, 3.4, 6.0), roughness, several_bounces=several),
+        ):
+            assert radiance(shader, None).max() <= 1 + 1e-3
+
+
+def test_what_is_refused() -> None:
+    with pytest.raises(ValueError, match="distribution must be one of"):
+        nodes.glossy(0.5, 0.5, distribution="phong")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="several_bounces is known for distribution 'ggx' alone"):
+        nodes.metallic(0.5, 0.5, 0.5, several_bounces=True, distribution="beckmann")
