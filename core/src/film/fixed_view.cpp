@@ -47,10 +47,6 @@ bool sees_alike(const CompiledScene& a, const CompiledScene& b, bool mirrors) {
            visible(a) == visible(b);
 }
 
-Vec3d squared(const Rgb& value) {
-    return Vec3d(value) * Vec3d(value);
-}
-
 /// The lights of some layers, as DirectLighting takes them.
 struct LitLayers {
     LitLayers(std::span<LightLayer*> some, const Picture& all) : layers(some.begin(), some.end()) {

@@ -10,6 +10,7 @@
 
 #include <glm/exponential.hpp>
 
+#include "lighting/ray_sums.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -44,14 +45,6 @@ constexpr double kUsualThreshold = 0.01;
 constexpr double kLeastThreshold = 1e-3;
 /// Differences between records that their noise explains are no error.
 constexpr double kNoiseVariances = 4;
-
-double mean(const Vec3d& color) {
-    return (color.x + color.y + color.z) / 3;
-}
-
-Vec3d squared(const Rgb& color) {
-    return Vec3d(color) * Vec3d(color);
-}
 
 Vec3d color_of(std::span<const float> image, std::size_t pixel) {
     return {image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]};

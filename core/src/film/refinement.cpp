@@ -35,10 +35,6 @@ constexpr double kNoiseDecay = 1.25;
 /// The squared error of a mean, expected by that, ÷ the squared difference between the means of its two halves.
 const double kErrorByHalves = std::exp2(-1 - kNoiseDecay);
 
-double mean(const Vec3d& v) {
-    return (v.x + v.y + v.z) / 3;
-}
-
 Vec3d color(std::span<const float> image, std::size_t pixel) {
     return {image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]};
 }

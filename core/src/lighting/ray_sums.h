@@ -43,6 +43,12 @@ struct GreySums {
     explicit operator RaySums() const { return {Vec3d(all), Vec3d(seen), Vec3d(squares), Vec3d(seen_squares)}; }
 };
 
+inline double mean(const Vec3d& color) {
+    return (color.x + color.y + color.z) / 3;
+}
+inline Vec3d squared(const Rgb& color) {
+    return Vec3d(color) * Vec3d(color);
+}
 /// a / b, 0 where b is not positive.
 Vec3d quotient(const Vec3d& a, const Vec3d& b);
 
