@@ -176,7 +176,9 @@ ShadowRays::Sums ShadowRays::sum(std::size_t lit_index, std::size_t lobe, bool s
         const std::size_t ray = weighed_.number(i);
         const DrawnRay& drawn = rays_.drawn[ray];
         const Rgb& visible = rays_.visible[ray];
-        const double value{weighed_.value(i) * drawn.radiance / (drawn.light_density + lobe_density_[ray])};
+        // A ray at the edge of what can be drawn may have no density in float.
+        const float density = drawn.light_density + lobe_density_[ray];
+        const double value{density > 0 ? weighed_.value(i) * drawn.radiance / density : 0.0F};
         if (is_grey) {
             grey.add(value, visible.x > 0);
         } else if (rays_.color.empty()) {
