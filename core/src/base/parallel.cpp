@@ -81,7 +81,9 @@ class WatchedWork {
         std::unique_lock lock(mutex_);
         const std::uint64_t number = ++asked_;
         changed_.notify_all();
-        changed_.wait(lock, [&] { return answered_ >= number || stopped_; });
+        // A plain wait() is a function of libstdc++ 12, which Red Hat 9, the platform of studios, lacks.
+        while (!changed_.wait_for(lock, kInterval, [&] { return answered_ >= number || stopped_; })) {
+        }
     }
 
     std::atomic<bool> stopped_ = false;
