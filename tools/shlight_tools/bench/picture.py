@@ -242,10 +242,14 @@ def _draw(path: Path, curves: list[Curve]) -> None:
         figure = canvas(5.2 * columns, 4.2 * rows)
         axes = figure.subplots(rows, columns, squeeze=False)
         for name, axis in zip(names, axes.flat, strict=False):
+            shown = []
             for curve in (curve for curve in curves if curve.scene == name):
                 times = np.geomspace(0.05, TIMES[-1], 60)
                 errors = [curve.error_at(float(t)) for t in times]
                 axis.loglog(times, errors, color=colors[curve.renderer], label=curve.renderer)
+                shown += [error for error in errors if 0 < error < math.inf]
+            if shown:  # where all are alike but for rounding, matplotlib finds no range
+                axis.set_ylim(min(shown) / 2, max(shown) * 2)
             axis.set_title(name)
             axis.set_xlabel("time [s]")
             axis.set_ylabel("relMSE")
