@@ -183,3 +183,11 @@ def test_paths_that_few_rays_find_leave_no_bright_dots() -> None:
     direct = shlight.render(scene, 64, 64, max_bounces=0, min_samples=4, max_samples=4)[..., :3].mean(axis=-1)
     around = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(whole, 2, mode="edge"), (5, 5)), axis=(2, 3))
     assert ((whole - direct) / (around + 0.02 * whole.mean())).max() <= 8
+
+
+def test_a_picture_of_one_ray_tells_its_noise_where_no_light_is() -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(3 * SQUARE, FACES)
+    scene.add_mesh(SQUARE + np.array([0.0, 0.0, 1.0]), FACES)
+    scene.set_camera(shlight.look_at((0, -4, 3), (0, 0, 0)), 1.0)
+    assert shlight.render(scene, 64, 64, min_samples=1, max_samples=1, max_bounces=4).report.noise == 0

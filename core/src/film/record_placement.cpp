@@ -174,7 +174,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     const RecordedLight found = stored_->records.look_up(surface.point, number_of_all(surface.bounces));
     const Vec3d all = color_of(image_, pixel) + (has_bounced_ ? Vec3d(0) : Vec3d(albedo * found.mean));
     const Vec3d scale = glm::sqrt(all * all + least_square_) / Vec3d(glm::max(albedo, Rgb(1e-6F)));
-    row.errors += found.weight > 0 ? mean((found.variance + found.noise) / (scale * scale)) : 0.0;
+    row.errors += found.weight > 0 ? mean(quotient(found.variance + found.noise, scale * scale)) : 0.0;
     if (found.weight >= kEnough && step < kLeastRefined) {
         return;
     }
