@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from shlight._arrays import checked_flag, checked_name
-from shlight.nodes.inputs import position
+from shlight.nodes.inputs import texture_coordinates, texture_place
 from shlight.nodes.values import (
     Color,
     Number,
@@ -70,14 +70,10 @@ def voronoi(
     """
     features = FEATURES.index(checked_name("feature", feature, FEATURES))
     metrics = METRICS.index(checked_name("metric", metric, METRICS))
-    if dimensions not in (1, 2, 3, 4):
-        raise ValueError(f"dimensions must be 1, 2, 3 or 4, got {dimensions!r}")
     if definition not in (3, 4, 5):
         raise ValueError(f"definition must be 3, 4 or 5, got {definition!r}")
-    where = position() if place is None else vector(place, "place")
-    along = [number(w, "w")] if dimensions in (1, 4) else []
-    chosen = [*([*where][:dimensions] if dimensions > 1 else []), *along]
     size = number(scale, "scale")
+    chosen = texture_coordinates(place, w, size, dimensions)
     settings = {
         "detail": detail,
         "roughness": roughness,
@@ -87,13 +83,13 @@ def voronoi(
         "randomness": randomness,
     }
     distance, r, g, b, *point = steps(
-        f"voronoi{dimensions}",
-        *(c * size for c in chosen),
+        f"voronoi{len(chosen)}",
+        *chosen,
         *(number(value, name) for name, value in settings.items()),
         data=features + 5 * (metrics + 4 * (int(definition) - 3 + 3 * checked_flag("normalize", normalize))),
     )
     placed = [c / size for c in point]
-    last = placed.pop() if along else number(0.0)
+    last = placed.pop() if dimensions in (1, 4) else number(0.0)
     x, y, z = [*placed, *[number(0.0)] * (3 - len(placed))]
     return Voronoi(distance, Color(r, g, b), Vector(x, y, z), last)
 
@@ -128,7 +124,7 @@ def gabor(
     """
     if dimensions not in (2, 3):
         raise ValueError(f"dimensions must be 2 or 3, got {dimensions!r}")
-    where = (position() if place is None else vector(place, "place")) * number(scale, "scale")
+    where = texture_place(place) * number(scale, "scale")
     if dimensions == 2:
         angles = [number(orientation, "orientation")]
     else:

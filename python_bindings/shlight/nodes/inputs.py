@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from shlight.nodes.values import Color, Step, Value, Vector
+from numbers import Integral
+
+from shlight.nodes.values import Color, Number, Step, Value, Vector, number, vector
 
 # Numbers of ShaderSource in the core.
 SOURCES = {
@@ -89,6 +91,26 @@ def ray_length() -> Value:
 def transparent_depth() -> Value:
     """How many surfaces the ray has passed through."""
     return read("transparent_depth")
+
+
+def texture_place(place: Vector | None) -> Vector:
+    """The place at which a texture is looked up; `position()`, if none is given."""
+    return position() if place is None else vector(place, "place")
+
+
+def texture_coordinates(place: Vector | None, w: Number, scale: Number, dimensions: int) -> list[Value]:
+    """The coordinates, times a scale, at which a texture of so many dimensions is looked up.
+
+    One is w, two are x and y of the place, three are the place, four the place and w. Raises ValueError naming the
+    argument.
+    """
+    if not isinstance(dimensions, Integral) or not 1 <= dimensions <= 4:
+        raise ValueError(f"dimensions must be 1, 2, 3 or 4, got {dimensions!r}")
+    where = texture_place(place)
+    along = [number(w, "w")] if dimensions in (1, 4) else []
+    chosen = [*([*where][: min(dimensions, 3)] if dimensions > 1 else []), *along]
+    factor = number(scale, "scale")
+    return [x * factor for x in chosen]
 
 
 def _product(source: str, v: Vector, *, transposed: bool = False, moved: bool = False) -> Vector:

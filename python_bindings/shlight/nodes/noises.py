@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from shlight._arrays import checked_flag, checked_name
-from shlight.nodes.inputs import position
+from shlight.nodes.inputs import texture_coordinates, texture_place
 from shlight.nodes.mathematics import floor
 from shlight.nodes.values import (
     Color,
@@ -30,7 +30,6 @@ from shlight.nodes.values import (
     select,
     sqrt,
     steps,
-    vector,
 )
 
 # The core's fractals, by the numbers that are modes of its operations.
@@ -83,17 +82,6 @@ def _footprint(place: Sequence[Value]) -> tuple[Value, ...]:
     """Trace and determinant of the scalar products of the steps to the camera rays to the right and below, and the
     longer axis of what they span."""
     return steps(f"footprint{len(place)}", *(right(x) for x in place), *(below(x) for x in place))
-
-
-def _scaled(place: Vector | None, w: Number, scale: Number, dimensions: int) -> list[Value]:
-    """The coordinates of noise."""
-    if not isinstance(dimensions, int) or not 1 <= dimensions <= 4:
-        raise ValueError(f"dimensions must be 1, 2, 3 or 4, got {dimensions!r}")
-    where = position() if place is None else vector(place, "place")
-    along = [number(w, "w")] if dimensions in (1, 4) else []
-    chosen = [*([*where][: min(dimensions, 3)] if dimensions > 1 else []), *along]
-    factor = number(scale, "scale")
-    return [x * factor for x in chosen]
 
 
 def _seed(count: int, seed: int) -> list[Value]:
@@ -155,7 +143,7 @@ def noise(
     """
     known = KINDS[checked_name("kind", kind, tuple(KINDS))]
     period = PERIOD if checked_flag("repeats", repeats) else 0.0
-    moved, footprint = _distorted(_scaled(place, w, scale, dimensions), distortion, period)
+    moved, footprint = _distorted(texture_coordinates(place, w, scale, dimensions), distortion, period)
     octaves = _Octaves(
         "fbm" if known == "fbm_sum" and checked_flag("normalize", normalize) else known,
         clamp(number(detail, "detail"), 0.0, MOST_DETAIL) + 1.0,
@@ -191,7 +179,7 @@ def musgrave(
     Raises ValueError naming the argument.
     """
     known = KINDS[checked_name("kind", kind, tuple(KINDS))]
-    where = _scaled(place, w, scale, dimensions)
+    where = texture_coordinates(place, w, scale, dimensions)
     count = clamp(number(detail, "detail"), 0.0, MOST_DETAIL)
     if known == "hetero_terrain":  # where part of the first octave is asked for, it is whole, and that is the second's
         count = select(count < 1.0, count + 1.0, count)
@@ -286,7 +274,7 @@ def wave(
     chosen = directions[checked_name("direction", direction, tuple(directions))]
     shape = PROFILES[checked_name("profile", profile, tuple(PROFILES))]
     # Edges at whole coordinates would be noise, as in Blender.
-    p = ((position() if place is None else vector(place, "place")) * number(scale, "scale") + 1e-6) * 0.999999
+    p = (texture_place(place) * number(scale, "scale") + 1e-6) * 0.999999
     turned = chosen(p) + number(phase, "phase")
     variance = _footprint([turned])[0] * (1.0 / 12.0)
     amount = number(distortion, "distortion")

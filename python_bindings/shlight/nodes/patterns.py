@@ -7,9 +7,9 @@ import math
 from typing import NamedTuple
 
 from shlight._arrays import checked_flag, checked_integer, checked_number
-from shlight.nodes.inputs import position
+from shlight.nodes.inputs import texture_place
 from shlight.nodes.mathematics import floor
-from shlight.nodes.values import Color, Number, Value, Vector, clamp, equal, minimum, number, operation, select, vector
+from shlight.nodes.values import Color, Number, Value, Vector, clamp, equal, minimum, number, operation, select
 
 TURN = 2.0 * math.pi
 
@@ -43,7 +43,7 @@ def bricks(
     squash: factor on the width of bricks in rows whose number is a multiple of squash_frequency; both 1 … 99.
     Raises ValueError naming the argument.
     """
-    x, y, _ = (position() if place is None else vector(place, "place")) * number(scale, "scale")
+    x, y, _ = texture_place(place) * number(scale, "scale")
     width, height = number(brick_width, "brick_width"), number(row_height, "row_height")
     size, smooth = number(mortar_size, "mortar_size"), number(mortar_smooth, "mortar_smooth")
     row = floor(y / height)
@@ -101,7 +101,7 @@ def magic(
     Raises ValueError naming the argument.
     """
     steps = checked_integer("depth", depth, 0, len(_STEPS))
-    where = position() if place is None else vector(place, "place")
+    where = texture_place(place)
     size, factor = number(scale, "scale"), number(distortion, "distortion")
     before, after = (size, number(1.0)) if checked_flag("wraps_scaled", wraps_scaled) else (number(1.0), size)
     wrapped = {name: operation("modulo", c * before, TURN) for name, c in zip("xyz", where, strict=True)}
