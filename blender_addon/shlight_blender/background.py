@@ -28,7 +28,7 @@ START = Path(__file__).with_name("start.py")
 
 
 def command(worker: str) -> list[str]:
-    """How it is started to run main() of a module of the add-on, such as "export.bake_worker"."""
+    """How it is started to run main() of a module of the add-on, such as "compare.render"."""
     arguments = [str(START), "--", __package__, os.pathsep.join(folder for folder in sys.path if folder), worker]
     if bpy.app.binary_path:
         options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python"]

@@ -80,6 +80,11 @@ def slot_materials(evaluated: Any) -> tuple[Any, ...]:
     return tuple(materials)
 
 
+def sky_aerosols(node: Any) -> float:
+    """The density of aerosols in a Sky Texture, which is called dust before Blender 5.0."""
+    return float(node.aerosol_density if hasattr(node, "aerosol_density") else node.dust_density)
+
+
 _LONG_PASS_NAMES = VERSION >= (5, 0, 0)
 
 

@@ -85,12 +85,12 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             return
         import shlight
 
-        from .export import ExportedScene, everything, kept_world, preview_settings
+        from .export import ExportedScene, everything, preview_settings
 
         try:
             exported = ExportedScene()
             exported.look_from(depsgraph, frame=frame)
-            exported.update(depsgraph, everything(), bake=kept_world)
+            exported.update(depsgraph, everything())
             image = shlight.render(
                 exported.scene,
                 frame.width,

@@ -190,9 +190,7 @@ class RenderedViewport:
         try:
             self._exported.look_through(view)
             changes, self._changes = self._changes, Changes()
-            changed = scene_may_change and self._exported.update(
-                depsgraph, changes, viewport=context.space_data, bake=self._bake
-            )
+            changed = scene_may_change and self._exported.update(depsgraph, changes, viewport=context.space_data)
             self._error = ""
         except Exception as error:
             if not isinstance(error, ExportError):
@@ -207,15 +205,6 @@ class RenderedViewport:
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
             self._maker.start(Job(self._exported.scene, view.frame, settings, denoises))
         self._shown = needed
-
-    def _bake(self, world: Any, scene: Any) -> Any:
-        from .export import bake_in_background
-
-        return bake_in_background(world, scene, self._take_baked_world)
-
-    def _take_baked_world(self) -> None:
-        self._changes.world = True
-        self._redraw()
 
     def _redraw(self) -> None:
         try:

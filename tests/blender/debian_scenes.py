@@ -182,7 +182,7 @@ def noise(studio):
 
 
 def sky(studio):
-    """A world that is baked to a picture and a sun."""
+    """A world of a sky and its sun."""
     studio.plane(material=studio.material())
     studio.ball(1.0, studio.material(Color=GOLD), location=(0, 0, 1.1))
     studio.scene.shlight.world_width, studio.scene.shlight.shadow_rays = 512, 64

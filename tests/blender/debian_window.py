@@ -8,14 +8,13 @@ import bpy
 import nodeitems_utils
 
 from shlight_blender import engine, record
-from shlight_blender.export import bake
 from shlight_blender.ui import panels
 
 sys.path.append(str(Path(__file__).parent))
 from debian_steps import FOLDER, start
 
 ended = []
-drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "kept": [], "previews": []}
+drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "previews": []}
 
 
 def watched(original, name):
@@ -101,7 +100,7 @@ def note_nodes(scene):
 
 
 def set_sky(scene):
-    """A world that has to be baked, around things that are drawn as they are."""
+    """A world of nodes, around things that are drawn as they are."""
     bpy.data.objects["Cube"].data.materials.clear()
     tree = scene.world.node_tree
     tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs[0], tree.nodes["Background"].inputs["Color"])
@@ -117,7 +116,6 @@ def final_render(scene, path):
     while not ended or bpy.app.is_job_running("RENDER"):
         yield
     drawn["messages"].append(record.last.messages)
-    drawn["kept"].append(len(bake.kept))
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)

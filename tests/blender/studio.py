@@ -221,6 +221,18 @@ class Studio:
         self.ball(radius=0.6, material=mirror, rings=32, location=(-1.8, 0, 0))
         self.camera((0.5, -4, 0.6), (0, 0, 0), angle=1.6)
 
+    def all_around(self, width: int) -> None:
+        """A camera that sees everything: +x in the middle, +y to its left, +z on top."""
+        from shlight_blender.compat import panorama_settings
+
+        lens = bpy.data.cameras.new("Panorama")
+        lens.type = "PANO"
+        panorama_settings(lens).panorama_type = "EQUIRECTANGULAR"
+        made = self.link("Panorama", lens)
+        made.rotation_euler = (np.pi / 2, 0.0, -np.pi / 2)
+        self.scene.camera = made
+        self.resolution(width, width // 2)
+
     def floors(self) -> None:
         """A diffuse floor and a glossy plate, and a camera that sees nothing else; many samples."""
         self.plane(material=self.material(Color=(0.7, 0.7, 0.6)))

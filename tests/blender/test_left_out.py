@@ -69,7 +69,7 @@ def test_simplify_limits_subdivision_and_not_textures(studio: Any) -> None:
     assert studio.messages() == ["Scene 'Scene': Simplify's Texture Limit is not supported; textures keep their size"]
 
 
-@pytest.mark.parametrize("source", ["strength", "pixels", "baked"])
+@pytest.mark.parametrize("source", ["strength", "pixels", "nodes"])
 def test_negative_light_of_a_world_is_named(studio: Any, source: str) -> None:
     studio.lit_floor()
     background = studio.world((0.2, 0.3, 0.4), -1.0 if source == "strength" else 1.0)
@@ -80,7 +80,7 @@ def test_negative_light_of_a_world_is_named(studio: Any, source: str) -> None:
         node = tree.nodes.new("ShaderNodeTexEnvironment")
         node.image = studio.picture(pixels)
         tree.links.new(node.outputs[0], background.inputs[0])
-    elif source == "baked":
+    elif source == "nodes":
         studio.scene.shlight.world_width = 64
         node = tree.nodes.new("ShaderNodeMath")
         node.operation = "SUBTRACT"

@@ -143,9 +143,9 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
 def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
     studio.world()
     context = {"scene": studio.scene, "world": studio.scene.world}
-    assert drawn_by(data.baking, **context).shown == {"world_width"}
+    assert drawn_by(data.world_picture, **context).shown == {"world_width"}
     assert "world_width" not in drawn_by(settings.light, **context).shown
-    assert drawn_by(data.baking, scene=studio.scene, world=None).shown == set()
+    assert drawn_by(data.world_picture, scene=studio.scene, world=None).shown == set()
 
 
 def test_without_the_native_module_the_engine_says_so(

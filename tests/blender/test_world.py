@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from shlight_blender import record
-from shlight_blender.export.bake import BakeError, bake_world
-from shlight_blender.export.world import radiance_of
+from shlight_blender.export.nodes import Surroundings
+from shlight_blender.export.world import world_of_nodes
 from shlight_blender.report import Effect, ExportReport
 
 
@@ -143,19 +143,12 @@ def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
     studio.compare(error=1e-3)
 
 
-def world_program(studio: Any) -> Any:
-    """The picture that the world's program makes, as wide as World Width."""
-    world = studio.scene.world
-    report = ExportReport()
-    found = radiance_of(
-        world.node_tree.get_output_node("CYCLES").inputs["Surface"],
-        world,
-        "World",
-        studio.scene.shlight.world_width,
-        report,
-    )
+def world_program(studio: Any, width: int) -> Any:
+    """The picture that the world's program makes."""
+    world, report = studio.scene.world, ExportReport()
+    found = world_of_nodes(world, "World", width, Surroundings(), report)
     assert report.lines() == []
-    return found
+    return found.radiance
 
 
 def through_a_mapping(texture: Any, kind: str) -> None:
@@ -210,27 +203,38 @@ def by_what_looks(texture: Any) -> None:
 )
 def test_programs_of_worlds_against_cycles(studio: Any, change: Callable[[Any], None]) -> None:
     change(set_picture(studio, gradient(), (0.4, -0.7, 2.0)))
-    studio.scene.shlight.world_width = 256
-    baked = bake_world(studio.scene.world, studio.scene)
-    assert baked is not None
+    studio.all_around(256)
+    studio.scene.cycles.samples = 16
+    seen = studio.render("CYCLES")[..., :3]
     # Cycles draws 16 places of a texel, and one is looked at here: at edges between closest texels they differ.
-    assert np.abs(world_program(studio) - baked.picture).mean() <= 0.01 * np.abs(baked.picture).mean()
+    assert np.abs(world_program(studio, 256) - seen).mean() <= 0.01 * np.abs(seen).mean()
 
 
-def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: Any) -> None:
-        raise BakeError("there is no Cycles")
+@pytest.mark.parametrize(("kind", "name"), [("VIEW_LAYER", "tint"), ("OBJECT", "tint"), ("GEOMETRY", "Col")])
+def test_attributes_of_a_world(studio: Any, kind: str, name: str) -> None:
+    """A view layer's are read from it or the scene; a world has no others."""
+    studio.ball_in_view_of_the_world()
+    background = studio.world()
+    tree = background.id_data
+    node, sum_of = tree.nodes.new("ShaderNodeAttribute"), tree.nodes.new("ShaderNodeVectorMath")
+    node.attribute_type, node.attribute_name = kind, name
+    sum_of.inputs[1].default_value = (0.1, 0.2, 0.3)
+    studio.scene["tint"] = (0.2, 0.5, 0.9)
+    tree.links.new(node.outputs["Color"], sum_of.inputs[0])
+    tree.links.new(sum_of.outputs[0], background.inputs["Color"])
+    studio.compare(error=1e-3)
+    assert studio.messages() == []
 
-    monkeypatch.setattr("shlight_blender.export.scene.bake_world", fail)
+
+def test_a_node_that_is_not_supported_is_named(studio: Any) -> None:
     studio.plane()
     studio.area()
     studio.camera()
     texture = set_picture(studio, gradient())
     tree = studio.scene.world.node_tree
-    tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs["Color"], texture.inputs["Vector"])
-    text = "\n".join(studio.messages())
-    assert "(there is no Cycles)" in text
-    assert "Sky Texture is not supported" in text
+    tree.links.new(tree.nodes.new("ShaderNodeWireframe").outputs[0], texture.inputs["Vector"])
+    (message,) = studio.messages()
+    assert "World 'World', node 'Wireframe': Wireframe is not supported" in message
 
 
 def test_light_that_misses_the_tolerance_is_told(studio: Any) -> None:

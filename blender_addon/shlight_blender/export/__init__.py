@@ -3,7 +3,6 @@
 
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
-from .bake import bake_in_background, kept_world
 from .camera import Eye, aperture_of, panorama_of, set_panorama, set_projection
 from .changes import Changes, changes_of, everything
 from .scene import ExportedScene, export_scene
@@ -17,12 +16,10 @@ __all__ = [
     "Eye",
     "Frame",
     "aperture_of",
-    "bake_in_background",
     "changes_of",
     "everything",
     "export_scene",
     "frame_of",
-    "kept_world",
     "panorama_of",
     "preview_settings",
     "render_settings",

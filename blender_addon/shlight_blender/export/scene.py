@@ -17,7 +17,6 @@ from ..frame import Frame, frame_of
 from ..names import name_of
 from ..passes import PassWishes, pass_wishes
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
-from .bake import Baked, Waiting, bake_world
 from .camera import Eye, View, set_camera
 from .changes import Changes, everything
 from .images import TEXTURES
@@ -26,8 +25,10 @@ from .meshes import SceneMeshes
 from .nodes import Surroundings
 from .seen_objects import Culling, culling_of, shares_of_picture
 from .settings import report_unsupported_settings
-from .world import Bake, SceneWorld, world_of
+from .world import SceneWorld, world_of
 
+# Called with what is being done while time passes; False: stop it.
+Waiting = Callable[[str], bool]
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
 # Types of objects that have a surface or volume which is not exported. Curves, texts, surfaces and metaballs are not
@@ -135,20 +136,16 @@ class ExportedScene:
         *,
         viewport: Any = None,
         waiting: Waiting | None = None,
-        bake: Bake | None = None,
     ) -> bool:
         """Takes over what has changed; False if nothing has. `waiting`, and errors, as of `export_scene`.
 
         viewport: a SpaceView3D; what is hidden in it is left out, in place of what is hidden in renders.
-        bake: makes pictures of worlds of nodes in another way than `bake_world`; it may take its time.
         """
         self._find_more(changes, _State.of(depsgraph, viewport, self._culling))
         blender_scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
         if changes.world:
-            self._is_lit["world"] = self._world.read(
-                blender_scene, view_layer, self._state.passes, self._new_report("world"), bake or _waiting_bake(waiting)
-            )
+            self._is_lit["world"] = self._world.read(depsgraph, self._state.passes, self._new_report("world"))
         if changes.materials:
             TEXTURES.begin_export()
             bounces = self._state.materials[1]
@@ -271,15 +268,6 @@ def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:
         )
     evaluated = camera.evaluated_get(depsgraph)
     return Eye(camera, evaluated.matrix_world, evaluated.data.shift_x)
-
-
-def _waiting_bake(waiting: Waiting | None) -> Bake:
-    def bake(world: Any, scene: Any) -> Baked:
-        if (baked := bake_world(world, scene, waiting)) is None:
-            raise ExportCancelled
-        return baked
-
-    return bake
 
 
 def _asking(waiting: Waiting | None) -> Callable[[], None]:

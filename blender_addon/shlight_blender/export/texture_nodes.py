@@ -17,6 +17,7 @@ from .images import MISSING, TextureUse, associates_alpha, datablock_texture, fi
 from .mesh_attributes import GENERATED
 from .nodes import Expression, NodeInputs, ReadNode
 from .pattern_nodes import PATTERN_NODES
+from .sky_nodes import sky_texture
 
 INTERPOLATIONS = {"Closest": "closest", "Linear": "linear", "Cubic": "cubic", "Smart": "cubic"}
 EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
@@ -230,6 +231,7 @@ def _white_noise(inputs: NodeInputs) -> Expression:
 TEXTURE_NODES: dict[str, ReadNode] = {
     "TEX_IMAGE": image_texture,
     "TEX_ENVIRONMENT": environment_texture,
+    "TEX_SKY": sky_texture,
     "TEX_CHECKER": _checker,
     "TEX_GRADIENT": _gradient,
     "TEX_WHITE_NOISE": _white_noise,

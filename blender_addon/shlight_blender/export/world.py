@@ -4,9 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,20 +14,20 @@ from numpy.typing import NDArray
 import shlight
 from shlight.nodes import Shader
 from shlight.nodes.rays import Ray, color_on_ray
+from shlight.nodes.skies import Sky
 from shlight.nodes.values import Varying, number, vector
 
 from ..compat import uses_nodes
 from ..names import name_of
 from ..passes import WORLD, PassWishes
 from ..report import Effect, ExportReport
-from .bake import Baked, BakeError, Sun
-from .emission import Input, VaryingEmission
+from .emission import VaryingEmission
 from .images import BRIGHTEST, linear_pixels
-from .mesh_attributes import GENERATED
 from .nodes import NodeInputs, Origin, ReadNode, Surroundings, TreeReader, all_nodes, node_name, origin
 from .shaders import NODES, SHADERS, emission
+from .sky_nodes import MODELS, sky_of, sky_texture
+from .world_picture import Sun, picture, sun_of
 
-TEXELS_AT_ONCE = 2**16
 # Outputs of a Light Path node for a diffuse ray, which sees the world as it lights a surface; others are 0.
 DIFFUSE_RAY = {"Is Diffuse Ray": 1.0, "Is Reflection Ray": 1.0, "Ray Depth": 1.0, "Diffuse Depth": 1.0}
 
@@ -42,69 +39,14 @@ def _geometry(inputs: NodeInputs) -> Varying | Shader:
     return NODES["NEW_GEOMETRY"](inputs)
 
 
-# Shaders of surfaces give no light in a world, and its attributes are those of the scene, which no program has.
-LEFT_OUT = {"ATTRIBUTE", *SHADERS} - {"ADD_SHADER", "EMISSION", "MIX_SHADER"}
+WIDEST_SUN = math.radians(5.0)  # wider ones stay in the picture
+# Shaders of surfaces give no light in a world.
+LEFT_OUT = set(SHADERS) - {"ADD_SHADER", "EMISSION", "MIX_SHADER"}
 WORLD_NODES: dict[str, ReadNode] = {name: read for name, read in NODES.items() if name not in LEFT_OUT} | {
     "BACKGROUND": emission,
     "LIGHT_PATH": lambda inputs: number(DIFFUSE_RAY.get(inputs.output.identifier, 0.0)),
     "NEW_GEOMETRY": _geometry,
 }
-
-
-def radiance_of(surface: Any, world: Any, place: str, width: int, report: ExportReport) -> NDArray[Any]:
-    """The radiance that the socket `surface` of a world receives: RGB, or a picture `width` texels wide, as
-    `shlight.Scene.set_environment` takes them.
-
-    `report` receives what of its nodes is not supported.
-    """
-    reader = TreeReader(world, place, report, Surroundings(), WORLD_NODES)
-    light = VaryingEmission(color_on_ray(reader.shader(surface).emission, Ray.LIGHT))
-    if light.inputs:
-        light.values({}, 1)  # which makes its program, before threads ask for it
-        return _picture(light, width)
-    return np.clip(light.values({}, 1)[0], -BRIGHTEST, BRIGHTEST)
-
-
-def _picture(light: VaryingEmission, width: int) -> NDArray[np.float32]:
-    """(width / 2, width, 3)."""
-    height = width // 2
-    rows = max(TEXELS_AT_ONCE // width, 1)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        parts = pool.map(lambda top: _rows(light, width, top, min(top + rows, height)), range(0, height, rows))
-        return np.concatenate(list(parts))
-
-
-def _rows(light: VaryingEmission, width: int, top: int, bottom: int) -> NDArray[np.float32]:
-    """The middles of texels, over each of which pictures are filtered."""
-    # One texel more to the right and one below.
-    longitude = math.pi * (1.0 - 2.0 * (np.arange(width + 1) + 0.5) / width)
-    latitude = math.pi * (0.5 - (np.arange(top, bottom + 1) + 0.5) / (width // 2))[:, None]
-    sines = np.broadcast_to(np.sin(latitude), (len(latitude), width + 1))
-    grid = np.stack([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), sines])
-    places = np.stack([grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, :-1]], axis=1).reshape(3, 3, -1)
-    found = light.values(_inputs_at(places), places.shape[-1]).reshape(bottom - top, width, 3)
-    return np.clip(found, -BRIGHTEST, BRIGHTEST).astype(np.float32)
-
-
-def _inputs_at(directions: NDArray[np.float64]) -> dict[Input, NDArray[np.float64]]:
-    """A program's inputs in directions (3, …), as Cycles has them: a sphere of radius 1, seen from its middle."""
-    inputs: dict[Input, NDArray[np.float64]] = {}
-    for i, along in enumerate(directions):
-        inputs |= {(source, 0, i): -along for source in ("normal", "geometric_normal", "towards_viewer")}
-        inputs |= {("position", 0, i): along, ("attribute", GENERATED, i): along}
-        inputs |= {(matrix, 0, 5 * i): np.ones(1) for matrix in ("object_to_world", "world_to_object")}
-    return inputs
-
-
-# Bakes a world in its scene; None while the bake goes on.
-Bake = Callable[[Any, Any], "Baked | None"]
-
-MOST_NEGATIVE = 1e-3  # of a world's light, beyond which the report says that it is left out; skies have a little
-
-# Kinds of images whose pixels are those of one picture.
-PLAIN_IMAGES = {"FILE", "GENERATED"}
-# Kinds of rays that Cycles can hide the world from.
-RAY_KINDS = ("camera", "diffuse", "glossy")
 
 
 @dataclass
@@ -116,6 +58,50 @@ class World:
     suns: list[Sun] = field(default_factory=list)
 
 
+def world_of_nodes(world: Any, place: str, width: int, around: Surroundings, report: ExportReport) -> World:
+    """The world that the nodes of one with an output make: RGB, or a picture `width` texels wide, and suns.
+
+    `report` receives what of its nodes is not supported.
+    """
+    surface = world.node_tree.get_output_node("CYCLES").inputs["Surface"]
+    skies: list[Sky] = []
+
+    def sky_without_sun(inputs: NodeInputs) -> Varying:
+        node = inputs.node
+        if node.sky_type not in MODELS or not node.sun_disc or node.sun_size > WIDEST_SUN:
+            return sky_texture(inputs)
+        skies.append(sky_of(node))
+        return sky_texture(inputs, with_sun=False)
+
+    def light(read: dict[str, ReadNode], told: ExportReport) -> VaryingEmission:
+        reader = TreeReader(world, place, told, around, WORLD_NODES | read)
+        return VaryingEmission(color_on_ray(reader.shader(surface).emission, Ray.LIGHT))
+
+    without = light({"TEX_SKY": sky_without_sun}, report)
+    if not without.inputs:
+        return World(np.clip(without.values({}, 1)[0], -BRIGHTEST, BRIGHTEST))
+    suns: list[Sun] = []
+    with_suns = light({}, ExportReport()) if skies else without
+    for sky in skies:
+        sun = sun_of(sky, with_suns, without)
+        if sun is not None and not any(_overlap(sun, other) for other in suns):
+            suns.append(sun)
+    return World(picture(without, width), suns=suns)
+
+
+def _overlap(sun: Sun, other: Sun) -> bool:
+    """Whether the light of one is part of what has been measured as the other's."""
+    return float(sun.direction @ other.direction) > math.cos(0.5 * max(sun.angle, other.angle))
+
+
+MOST_NEGATIVE = 1e-3  # of a world's light, beyond which the report says that it is left out; skies have a little
+
+# Kinds of images whose pixels are those of one picture.
+PLAIN_IMAGES = {"FILE", "GENERATED"}
+# Kinds of rays that Cycles can hide the world from.
+RAY_KINDS = ("camera", "diffuse", "glossy")
+
+
 class SceneWorld:
     """The world of a shlight.Scene."""
 
@@ -125,16 +111,17 @@ class SceneWorld:
         self._visible = True
         self._group: str | None = None
 
-    def read(self, blender_scene: Any, view_layer: Any, passes: PassWishes, report: ExportReport, bake: Bake) -> bool:
+    def read(self, depsgraph: Any, passes: PassWishes, report: ExportReport) -> bool:
         """Sets the environment to the view layer's; True if it gives light.
 
-        bake: see `ExportedScene.update`.
         Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is
         transparent. `add_suns` is to follow.
         """
-        self._visible = not blender_scene.render.film_transparent
-        world = world_of(blender_scene, view_layer)
-        read = World(np.zeros(3)) if world is None else _read_world(world, blender_scene, report, bake)
+        scene = depsgraph.scene_eval
+        self._visible = not scene.render.film_transparent
+        world = world_of(scene, depsgraph.view_layer_eval)
+        around = Surroundings(depsgraph=depsgraph)
+        read = World(np.zeros(3)) if world is None else _read_world(world, scene.shlight.world_width, around, report)
         self._group = None if world is None else passes.light_part(WORLD, name_of(world, "lightgroup"))
         radiance = read.radiance
         if radiance.min() < 0.0:
@@ -158,7 +145,7 @@ def world_of(scene: Any, view_layer: Any) -> Any:
     return world if view_layer.use_sky else None
 
 
-def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake) -> World:
+def _read_world(world: Any, width: int, around: Surroundings, report: ExportReport) -> World:
     place = f"World '{name_of(world)}'"
     _report_visibility(world, place, report)
     if not uses_nodes(world):
@@ -171,24 +158,11 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake
     source = origin(output.inputs["Surface"])
     if source.node is None:
         return World(np.zeros(3))
-    picture = _plain_picture(source, TreeReader(world, place, ExportReport(), Surroundings(), NODES))
-    if picture is not None:
-        return picture
+    plain = _plain_picture(source, TreeReader(world, place, ExportReport(), Surroundings(), NODES))
+    if plain is not None:
+        return plain
     _report_rays(world, place, report)
-    findings = ExportReport()
-    read = World(radiance_of(output.inputs["Surface"], world, place, blender_scene.shlight.world_width, findings))
-    if not len(findings):
-        return read
-    try:
-        baked = bake(world, blender_scene)
-    except BakeError as error:
-        report.add(place, f"it could not be baked to a picture ({error}); it is simplified", Effect.LIGHT)
-        report.extend(findings)
-        return read
-    if baked is None:
-        report.add(place, "it is simplified until it is baked to a picture", Effect.LIGHT)
-        return read
-    return World(baked.picture, suns=baked.suns)
+    return world_of_nodes(world, place, width, around, report)
 
 
 def _plain_picture(source: Origin, reader: TreeReader) -> World | None:
@@ -238,9 +212,6 @@ def _report_visibility(world: Any, place: str, report: ExportReport) -> None:
 def _report_rays(world: Any, place: str, report: ExportReport) -> None:
     """Names nodes whose values one picture cannot hold."""
     for node in all_nodes(world.node_tree):
-        linked = {output.name for output in node.outputs if output.is_linked}
-        at = f"{place}, node '{node_name(node)}'"
-        if node.type == "LIGHT_PATH" and linked:
-            report.add(at, "kinds of rays are not told apart; all see what diffuse rays see")
-        if (node.type == "TEX_COORD" and linked & {"Camera", "Window"}) or (node.type == "CAMERA" and linked):
-            report.add(at, "coordinates of the camera are not supported; baked without them")
+        if node.type == "LIGHT_PATH" and any(output.is_linked for output in node.outputs):
+            text = "kinds of rays are not told apart; all see what diffuse rays see"
+            report.add(f"{place}, node '{node_name(node)}'", text)

@@ -26,9 +26,9 @@ LIGHT = {
 OTHER = ("emit", "environment")
 
 
-@panel("SHLIGHT_WORLD_PT_baking", "Baking")
-def baking(layout: Any, context: Any) -> None:
-    """Settings of baked worlds."""
+@panel("SHLIGHT_WORLD_PT_picture", "Picture")
+def world_picture(layout: Any, context: Any) -> None:
+    """Settings of the picture that a world of nodes becomes."""
     layout.prop(context.scene.shlight, "world_width")
 
 
@@ -150,7 +150,7 @@ def _light_group_of(owner: str) -> Draw:
 
 
 CLASSES = (
-    baking,
+    world_picture,
     measured,
     ray_visibility,
     lamp,

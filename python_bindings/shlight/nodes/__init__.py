@@ -35,6 +35,7 @@ from shlight.nodes.principled import (
     rising_lobes,
 )
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, scaled, translucent, transparent
+from shlight.nodes.skies import Sky, preetham
 from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector, clamp, equal, maximum, minimum, select, sqrt
@@ -44,6 +45,7 @@ __all__ = [
     "Color",
     "Gabor",
     "Shader",
+    "Sky",
     "Value",
     "Vector",
     "Voronoi",
@@ -85,6 +87,7 @@ __all__ = [
     "object_value",
     "oren_nayar",
     "position",
+    "preetham",
     "principled",
     "rays",
     "reflecting_normal",

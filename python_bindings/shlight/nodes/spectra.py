@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shlight.nodes.program import Table
 from shlight.nodes.values import Color, Number, Value, clamp, maximum, number, operation, select
@@ -61,14 +62,18 @@ TO_REC709 = (
 BRIGHTEST = 2.52  # to which Cycles scales a channel 1
 
 
+def matching() -> NDArray[np.float64]:
+    """The matching functions (3, 81)."""
+    return np.array([np.fromstring(row, sep=" ") for row in MATCHING]) / 1e4
+
+
 def wavelength(nanometres: Number) -> Color:
     """Linear Rec. 709 colour of light of one wavelength [nm], as Blender's Wavelength node has it; black from 780 on.
 
     Raises ValueError naming the argument.
     """
     length = number(nanometres, "nanometres")
-    matching = np.array([np.fromstring(row, sep=" ") for row in MATCHING]) / 1e4
-    rgb = np.array(TO_REC709) @ matching / BRIGHTEST
+    rgb = np.array(TO_REC709) @ matching() / BRIGHTEST
     # Cycles goes on along the first interval for another step.
     table = np.concatenate([2.0 * rgb[:, :1] - rgb[:, 1:2], rgb], axis=1)
     place = (length - (SHORTEST - STEP)) / (LONGEST - SHORTEST + STEP)

@@ -79,6 +79,7 @@ def image(
     extension: str = "repeat",
     unassociate: bool = False,
     closed: bool = False,
+    filtered: bool = True,
 ) -> Color:
     """The colour of a picture, filtered by how far texture coordinates move from camera ray to camera ray.
 
@@ -89,6 +90,7 @@ def image(
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
     closed: the picture goes around something, so that u jumps by 1 at a seam; the footprint there goes the short way.
+    filtered: False for the place alone, where the picture is smooth and the coordinates are not.
     Raises ValueError naming the argument.
     """
     filtering = INTERPOLATIONS.index(checked_name("interpolation", interpolation, INTERPOLATIONS))
@@ -103,6 +105,8 @@ def image(
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
     where = uv() if place is None else place
     u, v = where.x, where.y
+    if not filtered:
+        return Color(*steps("image", u, v, 0.0, 0.0, 0.0, 0.0, data=texture))
     along, down = right(u), below(u)
     if closed:
         along, down = (step - operation("floor", step + 0.5) for step in (along, down))
