@@ -71,11 +71,13 @@ def test_the_sky_of_preetham(studio: Any, sun: tuple[float, float, float], turbi
     assert studio.messages() == []
 
 
-def test_the_sky_of_hosek_is_named(studio: Any) -> None:
-    add_sky(studio, "HOSEK_WILKIE")
-    studio.camera()
+def test_the_sky_of_hosek_is_named_and_about_as_bright(studio: Any) -> None:
+    add_sky(studio, "HOSEK_WILKIE", sun_direction=(0.6, 0.3, 0.5), turbidity=3.0)
+    studio.plane()
+    studio.camera((0, 0, 3), (0, 0, 0), angle=0.3)
+    studio.compare(mean=0.15, error=0.1)
     (message,) = studio.messages()
-    assert "node 'Sky Texture': the model of Hosek and Wilkie is not supported; that of Preetham is used" in message
+    assert "the model of Hosek and Wilkie is not supported; that of Preetham, dimmed, is used" in message
 
 
 @pytest.mark.parametrize("kind", WITH_SUN)

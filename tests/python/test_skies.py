@@ -40,6 +40,8 @@ def scattered(latitude: float, azimuth: float, elevation: float) -> Array:
     )
     sun = np.array([math.cos(elevation), 0.0, math.sin(elevation)])
 
+    air = 5.4248e-5 * (380.0 / atmospheres.WAVELENGTHS) ** 4
+
     def reach(place: Array, direction: Array) -> float:
         rise = float(place @ direction)
         return math.sqrt(rise * rise + top * top - float(place @ place)) - rise
@@ -55,15 +57,15 @@ def scattered(latitude: float, azimuth: float, elevation: float) -> Array:
     def light(t: float) -> Array:
         place = start + t * along
         lost = depth(start, along, t) + depth(place, sun, reach(place, sun))
-        left = np.exp(-lost @ atmospheres.EXTINCTION)
+        left = np.exp(-lost @ [air, np.full_like(air, 1.11 * 2e-5), atmospheres.OZONE])
         own = densities(place)
         return np.concatenate([own[0] * left, own[1] * left])
 
     by_air, by_aerosols = np.split(integrate.quad_vec(light, 0.0, reach(start, along), epsrel=1e-5)[0], 2)
-    cosine, g = float(along @ sun), 0.76
+    cosine, g = float(along @ sun), 0.76  # that of aerosols, which scatter forwards
     rayleigh = 3.0 / (16.0 * math.pi) * (1.0 + cosine**2)
     mie = 3.0 / (8.0 * math.pi) * (1 - g * g) * (1 + cosine**2) / ((2 + g * g) * (1 + g * g - 2 * g * cosine) ** 1.5)
-    spectrum = rayleigh * atmospheres.AIR * by_air + mie * atmospheres.AEROSOLS * by_aerosols
+    spectrum = rayleigh * air * by_air + mie * 2e-5 * by_aerosols
     return np.asarray(spectrum @ atmospheres._to_xyz())
 
 

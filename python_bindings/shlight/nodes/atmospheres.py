@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 from shlight.nodes.spectra import TO_REC709, matching
 
 Array = NDArray[np.float64]
+Gather = Callable[[Array], Array]
 
 WIDTH, HEIGHT = 512, 256  # of a sky's picture, in texels
 
@@ -197,13 +199,14 @@ def _transmittance(height: Any, cosine: Any, around: Atmosphere) -> Array:
     return np.exp(-lost * (length / LONG_STEPS)[..., None])
 
 
-def _between(table: Array, place: Array, count: int) -> Array:
+def _between(table: Any, place: Any) -> Any:
     """Entries of a table's last axis but one at places 0 … 1 (rows, n), a row of places for each row of the table."""
-    x = np.clip(place, 0.0, 1.0) * (count - 1)
-    low = np.minimum(x.astype(np.intp), count - 2)
+    steps = table.shape[-2] - 1
+    x = np.clip(place, 0.0, 1.0) * np.float32(steps)
+    low = np.minimum(x.astype(np.intp), steps - 1)
     rows = np.arange(len(table))[:, None]
-    share = (x - low)[..., None]
-    return np.asarray(table[rows, low] * (1.0 - share) + table[rows, low + 1] * share)
+    first = table[rows, low]
+    return first + (table[rows, low + 1] - first) * (x - low).astype(np.float32)[..., None]
 
 
 class _OftenScattered:
@@ -214,7 +217,7 @@ class _OftenScattered:
         self._elevation = elevation
         self._start = min(max(around.altitude, 1.0), 99999.0) / 1000.0
         levels, cosines = np.linspace(0.0, THICKNESS, LEVELS), np.linspace(-1.0, 1.0, SUN_COSINES)
-        self._table = _transmittance(levels[:, None], cosines, around)
+        self._table = _transmittance(levels[:, None], cosines, around).astype(np.float32)
 
     def row(self, latitude: float) -> Array:
         """XYZ (WIDTH / 2, 3) of directions from opposite the sun to it."""
@@ -233,30 +236,36 @@ class _OftenScattered:
         to_sun = to_sun - math.cos(latitude) * math.cos(self._elevation) * np.cos(azimuth)
         # (steps, azimuths): the cosine at each place between the zenith and the sun.
         cosine = (distance * math.sin(self._elevation) + along[:, None] * to_sun) / radius[:, None]
-        sunlight, more = self._arriving(height, radius, cosine)
         air, aerosols, lost = _coefficients(height, self._around)
-        forward = FORWARD * FORWARD
-        by_air = 3.0 / (16.0 * math.pi) * (1.0 + to_sun**2)
-        by_aerosols = (1.0 - forward) / (4.0 * math.pi * (1.0 + forward - 2.0 * FORWARD * to_sun) ** 1.5)
-        source = sunlight * (air[:, None] * by_air[:, None] + aerosols[:, None] * by_aerosols[:, None])
-        source += more * (air + aerosols)[:, None]
         passed = np.exp(-step * lost)
         before = np.cumprod(np.concatenate([np.ones((1, 4)), passed[:-1]]), axis=0)
         weights = before * (1.0 - passed) / np.maximum(lost, 1e-7)
-        return np.asarray((np.einsum("snw,sw->nw", source, weights) * IRRADIANCE) @ OFTEN_TO_XYZ)
+        forward = FORWARD * FORWARD
+        by_air = 3.0 / (16.0 * math.pi) * (1.0 + to_sun**2)
+        by_aerosols = (1.0 - forward) / (4.0 * math.pi * (1.0 + forward - 2.0 * FORWARD * to_sun) ** 1.5)
+        once, often = self._arriving(height, radius, cosine.astype(np.float32), weights)
+        found = by_air[:, None] * once(air) + by_aerosols[:, None] * once(aerosols) + often(air + aerosols)
+        return np.asarray((found * IRRADIANCE) @ OFTEN_TO_XYZ)
 
-    def _arriving(self, height: Array, radius: Array, cosine: Array) -> tuple[Array, Array]:
-        """(steps, azimuths, 4): the share of sunlight that arrives, and what arrives scattered already."""
-        count = len(height)
-        level = np.broadcast_to(height / THICKNESS, (SUN_COSINES, count))
-        tables = np.swapaxes(_between(np.swapaxes(self._table, 0, 1), level, LEVELS), 0, 1)
-        place = 0.5 * cosine + 0.5
-        on_ground = _between(np.broadcast_to(self._table[0], tables.shape), place, SUN_COSINES)
-        up = self._table[0, -1] / tables[:, -1]
+    def _arriving(self, height: Array, radius: Array, cosine: Any, weights: Array) -> tuple[Gather, Gather]:
+        """Functions that sum up what scatters sunlight, (steps, 4), along the ray to (azimuths, 4): of what arrives
+        straight, and of what has been scattered or reflected already."""
+        level = np.broadcast_to(height / THICKNESS, (SUN_COSINES, len(height)))
+        tables = np.swapaxes(_between(np.swapaxes(self._table, 0, 1), level), 0, 1)
+        place = np.float32(0.5) * cosine + np.float32(0.5)
+        sunlight = _between(tables, place)
+        on_ground = _between(np.broadcast_to(self._table[0], tables.shape), place) * cosine[..., None]
         solid_angle = 2.0 * math.pi * (1.0 - np.sqrt(1.0 - np.minimum(RADIUS / radius, 1.0) ** 2))
-        reflected = (GROUND_ALBEDO / (4.0 * math.pi**2)) * solid_angle[:, None] * up
-        more = SCATTERED_OFTEN / (1.0 + 5.0 * np.exp(-17.92 * cosine))[..., None]
-        return _between(tables, place, SUN_COSINES), more + reflected[:, None] * on_ground * cosine[..., None]
+        up = (GROUND_ALBEDO / (4.0 * math.pi**2)) * solid_angle[:, None] * self._table[0, -1] / tables[:, -1]
+        above = (1.0 / (1.0 + 5.0 * np.exp(-17.92 * cosine))).T
+
+        def summed(light: Any, scattering: Array) -> Array:
+            return np.asarray(np.einsum("snw,sw->nw", light, (weights * scattering).astype(np.float32)))
+
+        def often(scattering: Array) -> Array:
+            return np.asarray(above @ (weights * scattering * SCATTERED_OFTEN) + summed(on_ground, up * scattering))
+
+        return partial(summed, sunlight), often
 
 
 def _picture_of_many(elevation: float, around: Atmosphere) -> Array:
