@@ -334,6 +334,17 @@ def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
         cycles.samples = count
 
 
+# Radii of hair curves and point clouds that have none of their own.
+DEFAULT_RADII = {"CURVES": 0.005, "POINTCLOUD": 0.01} if IS_BLENDER_4 else {"CURVES": 0.0, "POINTCLOUD": 0.0}
+
+
+def curve_settings(scene: Any) -> dict[str, Any]:
+    """The arguments of `shlight.Scene.add_curves` that Cycles' settings of curves give."""
+    own = getattr(scene, "cycles_curves", None)  # its add-on may be off
+    levels = getattr(own, "subdivisions", 2)
+    return {"ribbons": getattr(own, "shape", "RIBBONS") == "RIBBONS", "subdivisions": min(1 << min(levels, 4), 15) + 1}
+
+
 # Options of a property with a path that may begin with "//", the folder of the file.
 RELATIVE_PATH = {"PATH_SUPPORTS_BLEND_RELATIVE"} if VERSION >= (4, 5, 0) else set()
 

@@ -151,23 +151,33 @@ void set_bsdfs(MeshUse& use, const AttributeNames& names, const py::object& valu
     }
 }
 
-/// (n,) or (n, c) for n vertices or triangles; (k, 3) or (k, 3, c) for corners.
+/// The names of a shape's vertices and parts.
+std::pair<const char*, const char*> names_of_parts(const MeshShape& shape) {
+    return shape.form == SurfaceForm::triangles ? std::pair("vertices", "triangles")
+           : shape.is_curved()                  ? std::pair("points", "curves")
+                                                : std::pair("points", "spheres");
+}
+
+/// (n,) or (n, c) for n vertices or parts; (k, 3) or (k, 3, c) for corners.
 MeshAttribute attribute_from(const std::string& name, const MeshShape& mesh, const py::handle& value) {
     const AnyArray<float> array = array_from<float>(name.c_str(), value);
     const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
     const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
     const bool has_rows = array.ndim() >= 1;
     const bool of_corners = array.ndim() == 3 && fits(array, {triangle_count, 3, kAny});
+    const auto part_count = static_cast<py::ssize_t>(mesh.part_count());
     const bool of_rows =
-        has_rows && array.ndim() <= 2 && (array.shape(0) == vertex_count || array.shape(0) == triangle_count);
+        has_rows && array.ndim() <= 2 && (array.shape(0) == vertex_count || array.shape(0) == part_count);
     const py::ssize_t components = array.ndim() == 1 ? 1 : has_rows ? array.shape(array.ndim() - 1) : 0;
     if (!(of_corners || of_rows) || components < 1 || components > 4) {
-        throw std::invalid_argument(name + " must have one to four numbers for each of " +
-                                    std::to_string(vertex_count) + " vertices or " + std::to_string(triangle_count) +
-                                    " triangles, or shape (triangles, 3, components)");
+        const auto [vertices, parts] = names_of_parts(mesh);
+        throw std::invalid_argument(
+            name + " must have one to four numbers for each of " + std::to_string(vertex_count) + " " + vertices +
+            " or " + std::to_string(part_count) + " " + parts +
+            (mesh.form == SurfaceForm::triangles ? ", or shape (triangles, 3, components)" : ""));
     }
     if (name == "uvs" && components != 2) {
-        throw std::invalid_argument("uvs must have two numbers for each vertex or corner");
+        throw std::invalid_argument("uvs must have two numbers for each vertex, part or corner");
     }
     const auto all = values(array);
     check_all_finite(name.c_str(), all);
@@ -247,6 +257,24 @@ std::vector<Emission> emission_from(const py::object& value) {
         result.emplace_back(all[i], all[has_sides ? i + 1 : i]);
     }
     return result;
+}
+
+/// All but the triangles, curves or spheres, which the mesh has.
+Mesh completed(Mesh mesh, const SurfaceArguments& arguments, AttributeNames& names, SceneObject& scene) {
+    add_attributes(mesh, names, "uvs", arguments.uvs);
+    mesh.uv = names.empty() ? MeshShader::kNoAttribute : 0;
+    add_attributes(mesh, names, "colors", arguments.colors);
+    add_attributes(mesh, names, "attributes", arguments.attributes);
+    set_materials(mesh, names, arguments.materials, scene);
+    if (!arguments.material_indices.is_none()) {
+        mesh.material_indices =
+            indices("material_indices", arguments.material_indices, {static_cast<py::ssize_t>(mesh.part_count())});
+    }
+    set_places(mesh, arguments.places);
+    mesh.turns_normals = flag_from("turn_normals", arguments.turn_normals);
+    mesh.terminator = {real_from("terminator_geometry_offset", arguments.terminator_geometry_offset),
+                       real_from("terminator_shading_offset", arguments.terminator_shading_offset)};
+    return mesh;
 }
 
 /// Normals per vertex or per corner; the other list stays empty.
@@ -369,30 +397,37 @@ void set_places(MeshUse& use, const PlaceArguments& arguments) {
     }
 }
 
-Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names, SceneObject& scene) {
+Mesh mesh_from(const TriangleArguments& shape, const SurfaceArguments& arguments, AttributeNames& names,
+               SceneObject& scene) {
     Mesh mesh;
-    mesh.vertices = copy_vectors("vertices", numbers<float>("vertices", arguments.vertices, {kAny, 3}));
-    const std::vector<std::uint32_t> corners = indices("triangles", arguments.triangles, {kAny, 3});
+    mesh.vertices = copy_vectors("vertices", numbers<float>("vertices", shape.vertices, {kAny, 3}));
+    const std::vector<std::uint32_t> corners = indices("triangles", shape.triangles, {kAny, 3});
     for (std::size_t i = 0; i < corners.size(); i += 3) {
         mesh.triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
     }
-    if (!arguments.normals.is_none()) {
-        set_normals(mesh, arguments.normals);
+    if (!shape.normals.is_none()) {
+        set_normals(mesh, shape.normals);
     }
-    add_attributes(mesh, names, "uvs", arguments.uvs);
-    mesh.uv = names.empty() ? MeshShader::kNoAttribute : 0;
-    add_attributes(mesh, names, "colors", arguments.colors);
-    add_attributes(mesh, names, "attributes", arguments.attributes);
-    set_materials(mesh, names, arguments.materials, scene);
-    if (!arguments.material_indices.is_none()) {
-        mesh.material_indices =
-            indices("material_indices", arguments.material_indices, {static_cast<py::ssize_t>(mesh.triangles.size())});
+    return completed(std::move(mesh), arguments, names, scene);
+}
+
+Mesh mesh_from(const RoundArguments& shape, const SurfaceArguments& arguments, AttributeNames& names,
+               SceneObject& scene) {
+    Mesh mesh;
+    mesh.form = shape.form;
+    mesh.vertices = copy_vectors("points", numbers<float>("points", shape.points, {kAny, 3}));
+    const AnyArray<float> radii = array_from<float>("radii", shape.radii);
+    if (radii.ndim() == 0) {
+        mesh.radii.assign(mesh.vertices.size(), *radii.data());
+    } else {
+        const auto all = values(numbers<float>("radii", radii, {static_cast<py::ssize_t>(mesh.vertices.size())}));
+        mesh.radii.assign(all.begin(), all.end());
     }
-    set_places(mesh, arguments.places);
-    mesh.turns_normals = flag_from("turn_normals", arguments.turn_normals);
-    mesh.terminator = {real_from("terminator_geometry_offset", arguments.terminator_geometry_offset),
-                       real_from("terminator_shading_offset", arguments.terminator_shading_offset)};
-    return mesh;
+    if (mesh.is_curved()) {
+        mesh.first = indices("first", shape.first, {kAny});
+        mesh.subdivisions = static_cast<std::uint32_t>(integer_from("subdivisions", shape.subdivisions, 1, 16));
+    }
+    return completed(std::move(mesh), arguments, names, scene);
 }
 
 }  // namespace shlight::python

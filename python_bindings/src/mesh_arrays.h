@@ -46,12 +46,23 @@ struct PlaceArguments {
     pybind11::object transforms, object_values, object_names, asset_names, object_indices;
 };
 
-/// All arguments of Scene.add_mesh.
-struct MeshArguments {
-    pybind11::object vertices, triangles, normals, uvs, colors, attributes, material_indices;
+/// Arguments that meshes, curves and point clouds share.
+struct SurfaceArguments {
+    pybind11::object uvs, colors, attributes, material_indices;
     MaterialArguments materials;
     PlaceArguments places;
     pybind11::object turn_normals, terminator_geometry_offset, terminator_shading_offset;
+};
+
+/// The arguments of Scene.add_mesh about its triangles.
+struct TriangleArguments {
+    pybind11::object vertices, triangles, normals;
+};
+
+/// The arguments of Scene.add_curves and Scene.add_point_cloud about their curves and spheres.
+struct RoundArguments {
+    SurfaceForm form;
+    pybind11::object points, radii, first, subdivisions;  // of spheres: no `first`
 };
 
 /// The names of a mesh's attributes, in their order.
@@ -59,7 +70,10 @@ using AttributeNames = std::vector<std::string>;
 
 /// Checks shapes and types; Scene::add_mesh checks the rest. names: output, the mesh's attributes. Groups and AOVs are
 /// added to the scene's lists, also by the functions below.
-Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names, SceneObject& scene);
+Mesh mesh_from(const TriangleArguments& shape, const SurfaceArguments& arguments, AttributeNames& names,
+               SceneObject& scene);
+Mesh mesh_from(const RoundArguments& shape, const SurfaceArguments& arguments, AttributeNames& names,
+               SceneObject& scene);
 void set_materials(MeshUse& use, const AttributeNames& names, const MaterialArguments& arguments, SceneObject& scene);
 void set_places(MeshUse& use, const PlaceArguments& arguments);
 

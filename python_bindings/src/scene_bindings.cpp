@@ -18,7 +18,7 @@ using namespace pybind11::literals;
 namespace shlight::python {
 namespace {
 
-constexpr const char* kSceneDoc = R"(Meshes, lights and a camera in one world frame, in metres.
+constexpr const char* kSceneDoc = R"(Meshes, curves, point clouds, lights and a camera in one world frame, in metres.
 
 Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
 What render() builds of a mesh is kept as long as the mesh stays as it is.
@@ -53,7 +53,37 @@ terminator_geometry_offset, terminator_shading_offset: 0 ... 1, against flat tri
 Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
 
-constexpr const char* kSceneMeshDoc = R"(A mesh of a Scene, as Scene.add_mesh returns it.
+constexpr const char* kAddCurvesDoc = R"(Add hair: curves that are Catmull-Rom splines through their points.
+
+points: (n, 3), of one curve after the other.
+radii: [m], not negative: a number, or (n,) with one per point.
+first: (c,) integers, the number of each curve's first point; the first is 0, and a curve has two points or more.
+ribbons: whether the curves are flat, turned to each ray, and shaded as tubes, which is fast; otherwise they are tubes.
+subdivisions: 1 ... 16, the straight pieces of a ribbon between two points.
+uvs: (n, 2) per point or (c, 2) per curve, or a dict of such arrays by name; shlight.nodes.uv() reads them.
+attributes: likewise, of one to four numbers; shlight.nodes.attribute() reads them. They are linear between points.
+material_indices: (c,) integers, the material of each curve; None: 0 for all.
+emission: as of Scene.add_mesh. Curves are seen to shine; they light nothing but by bounces.
+bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
+    material_pass_indices, terminator_shading_offset: as of Scene.add_mesh. Radii are scaled by the cube root of a
+    transform's determinant.
+
+Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
+Raises ValueError naming the argument; the scene is then as it was.)";
+
+constexpr const char* kAddPointCloudDoc = R"(Add a cloud of spheres.
+
+points: (n, 3), the centres.
+radii: [m], not negative: a number, or (n,).
+uvs, attributes, material_indices: as of Scene.add_curves, one for each sphere.
+emission: as of Scene.add_mesh. Spheres are seen to shine; they light nothing but by bounces.
+bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
+    material_pass_indices, terminator_shading_offset: as of Scene.add_mesh.
+
+Spheres are met from outside alone. Returns the SceneMesh, which can be changed and removed.
+Raises ValueError naming the argument; the scene is then as it was.)";
+
+constexpr const char* kSceneMeshDoc = R"(A mesh, curves or a cloud of a Scene, as Scene.add_mesh and its like return it.
 
 It belongs to that scene alone; copies of the scene have meshes of their own. A render that runs shows what was there
 when it began. All methods raise ValueError once the mesh has been removed.)";
@@ -88,6 +118,15 @@ struct MeshHandle {
     SceneObject& scene() const { return owner.cast<SceneObject&>(); }
 };
 
+template <class Shape>
+MeshHandle add_shape(const py::object& self, const Shape& shape, const SurfaceArguments& arguments) {
+    MeshHandle handle = {self, 0, {}};
+    SceneObject& scene = handle.scene();
+    handle.number = scene.scene.add_mesh(mesh_from(shape, arguments, handle.names, scene));
+    scene.changed();
+    return handle;
+}
+
 MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py::object& triangles,
                     const py::object& normals, const py::object& uvs, const py::object& colors,
                     const py::object& attributes, const py::object& bsdf, const py::object& emission,
@@ -96,24 +135,55 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                     const py::object& object_indices, const py::object& material_names,
                     const py::object& material_pass_indices, const py::object& turn_normals,
                     const py::object& terminator_geometry_offset, const py::object& terminator_shading_offset) {
-    MeshHandle handle = {self, 0, {}};
-    SceneObject& scene = handle.scene();
-    Mesh mesh = mesh_from({vertices,
-                           triangles,
-                           normals,
-                           uvs,
-                           colors,
-                           attributes,
-                           material_indices,
-                           {bsdf, emission, group, material_names, material_pass_indices},
-                           {transforms, object_values, object_names, asset_names, object_indices},
-                           turn_normals,
-                           terminator_geometry_offset,
-                           terminator_shading_offset},
-                          handle.names, scene);
-    handle.number = scene.scene.add_mesh(std::move(mesh));
-    scene.changed();
-    return handle;
+    return add_shape(self, TriangleArguments{vertices, triangles, normals},
+                     {uvs,
+                      colors,
+                      attributes,
+                      material_indices,
+                      {bsdf, emission, group, material_names, material_pass_indices},
+                      {transforms, object_values, object_names, asset_names, object_indices},
+                      turn_normals,
+                      terminator_geometry_offset,
+                      terminator_shading_offset});
+}
+
+MeshHandle add_curves(const py::object& self, const py::object& points, const py::object& radii,
+                      const py::object& first, const py::object& ribbons, const py::object& subdivisions,
+                      const py::object& uvs, const py::object& attributes, const py::object& bsdf,
+                      const py::object& emission, const py::object& material_indices, const py::object& transforms,
+                      const py::object& object_values, const py::object& group, const py::object& object_names,
+                      const py::object& asset_names, const py::object& object_indices, const py::object& material_names,
+                      const py::object& material_pass_indices, const py::object& terminator_shading_offset) {
+    const SurfaceForm form = flag_from("ribbons", ribbons) ? SurfaceForm::ribbons : SurfaceForm::tubes;
+    return add_shape(self, RoundArguments{form, points, radii, first, subdivisions},
+                     {uvs,
+                      py::none(),
+                      attributes,
+                      material_indices,
+                      {bsdf, emission, group, material_names, material_pass_indices},
+                      {transforms, object_values, object_names, asset_names, object_indices},
+                      py::bool_(true),
+                      py::float_(0.0),
+                      terminator_shading_offset});
+}
+
+MeshHandle add_point_cloud(const py::object& self, const py::object& points, const py::object& radii,
+                           const py::object& uvs, const py::object& attributes, const py::object& bsdf,
+                           const py::object& emission, const py::object& material_indices, const py::object& transforms,
+                           const py::object& object_values, const py::object& group, const py::object& object_names,
+                           const py::object& asset_names, const py::object& object_indices,
+                           const py::object& material_names, const py::object& material_pass_indices,
+                           const py::object& terminator_shading_offset) {
+    return add_shape(self, RoundArguments{SurfaceForm::spheres, points, radii, py::none(), py::none()},
+                     {uvs,
+                      py::none(),
+                      attributes,
+                      material_indices,
+                      {bsdf, emission, group, material_names, material_pass_indices},
+                      {transforms, object_values, object_names, asset_names, object_indices},
+                      py::bool_(true),
+                      py::float_(0.0),
+                      terminator_shading_offset});
 }
 
 void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission, const py::object& group,
@@ -165,8 +235,12 @@ std::string counted(std::size_t count, const char* name, const char* plural) {
 std::string repr_of_mesh(const MeshHandle& self) {
     try {
         const SceneMesh& mesh = self.scene().scene.mesh(self.number);
+        const MeshShape& shape = *mesh.shape;
+        const std::string part = shape.form == SurfaceForm::triangles ? "triangle"
+                                 : shape.is_curved()                  ? "curve"
+                                                                      : "sphere";
         return "SceneMesh(index=" + std::to_string(self.number) + ", " +
-               counted(mesh.shape->triangles.size(), "triangle", "triangles") + ", " +
+               counted(shape.part_count(), part.c_str(), (part + "s").c_str()) + ", " +
                counted(mesh.transforms.size(), "instance", "instances") + ")";
     } catch (const std::invalid_argument&) {
         return "SceneMesh(removed)";
@@ -268,6 +342,19 @@ void bind_scene(py::module_& m) {
              "object_values"_a = py::none(), "group"_a = py::none(), "object_names"_a = py::none(),
              "asset_names"_a = py::none(), "object_indices"_a = py::none(), "material_names"_a = py::none(),
              "material_pass_indices"_a = py::none(), "turn_normals"_a = true, "terminator_geometry_offset"_a = 0.0,
+             "terminator_shading_offset"_a = 0.0)
+        .def("add_curves", &add_curves, kAddCurvesDoc, "points"_a, "radii"_a, "first"_a, py::kw_only(),
+             "ribbons"_a = true, "subdivisions"_a = 5, "uvs"_a = py::none(), "attributes"_a = py::none(),
+             "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
+             "transforms"_a = py::none(), "object_values"_a = py::none(), "group"_a = py::none(),
+             "object_names"_a = py::none(), "asset_names"_a = py::none(), "object_indices"_a = py::none(),
+             "material_names"_a = py::none(), "material_pass_indices"_a = py::none(),
+             "terminator_shading_offset"_a = 0.0)
+        .def("add_point_cloud", &add_point_cloud, kAddPointCloudDoc, "points"_a, "radii"_a, py::kw_only(),
+             "uvs"_a = py::none(), "attributes"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(),
+             "material_indices"_a = py::none(), "transforms"_a = py::none(), "object_values"_a = py::none(),
+             "group"_a = py::none(), "object_names"_a = py::none(), "asset_names"_a = py::none(),
+             "object_indices"_a = py::none(), "material_names"_a = py::none(), "material_pass_indices"_a = py::none(),
              "terminator_shading_offset"_a = 0.0)
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")

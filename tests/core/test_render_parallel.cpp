@@ -144,10 +144,10 @@ TEST(RenderParallel, BuildingTheTracerCanBeStopped) {
         triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
     }
     std::atomic<int> asked = 0;
-    const TriangleTree whole(vertices, triangles, {}, [&] { return ++asked < 0; });
+    const SurfaceTree whole(vertices, triangles, {}, [&] { return ++asked < 0; });
     EXPECT_GT(asked, 2);  // not only before the build
     asked = 0;
-    EXPECT_THROW(TriangleTree(vertices, triangles, {}, [&] { return ++asked > 1; }), RenderCancelled);
+    EXPECT_THROW(SurfaceTree(vertices, triangles, {}, [&] { return ++asked > 1; }), RenderCancelled);
 }
 
 TEST(RenderParallel, BuildingEmittersAndEnvironmentsCanBeStopped) {

@@ -108,6 +108,14 @@ MESH = {
     "terminator_geometry_offset": 0.1,
     "terminator_shading_offset": 0.1,
 }
+STRANDS = {
+    "points": TRIANGLE,
+    "radii": [0.1, 0.2, 0.1],
+    **{name: MESH[name] for name in MESH if not name.endswith(("normals", "geometry_offset", "colors"))},
+}
+del STRANDS["vertices"], STRANDS["triangles"]
+CURVES = {**STRANDS, "first": [0], "ribbons": True, "subdivisions": 3, "uvs": [[0.0, 0.0]]}
+CLOUD = {**STRANDS, "material_indices": [0, 0, 0]}
 OF_MATERIALS = ("bsdf", "emission", "group", "material_names", "material_pass_indices")
 OF_PLACES = ("transforms", "object_values", "object_names", "asset_names", "object_indices")
 PICTURE = Path(__file__).parents[2] / "docs" / "images" / "preview.png"
@@ -209,6 +217,8 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdfs.__rmul__": (Bsdfs.lambert(0.5).__rmul__, {"factor": 0.5}),
     **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
+    "Scene.add_curves": (of_scene("add_curves"), CURVES),
+    "Scene.add_point_cloud": (of_scene("add_point_cloud"), CLOUD),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),
     "Scene.intersect": (of_scene("intersect"), {**RAYS, "threads": 1}),
     "Scene.irradiance": (of_scene("irradiance"), {**POINTS, **SHADOWED, **TOLD}),
@@ -337,7 +347,8 @@ RELATED = {
     "max_samples": ("min_samples",),
     "normals": ("tangents",),
     "origins": ("directions",),
-    "points": ("normals",),
+    "first": ("uvs", "material_indices"),
+    "points": ("normals", "radii", "first", "uvs", "material_indices"),
     "radius": ("intensity",),
     "tangents": ("normals",),
     "target": ("up",),

@@ -93,6 +93,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "f0": NO_COLOR,
     "factor": NO_COLOR,
     "filter_width": (0,),
+    "first": ([1], [0, 3], [0, 2], [], [0.0], [-1], [[0]]),
     "fisheye_fov": (0,),
     "fisheye_polynomial": (1, [0, INF, 0, 0, 0]),
     "focus_distance": (0, 1e-11),
@@ -151,6 +152,10 @@ REFUSED: dict[str, tuple[Any, ...]] = {
         *(np.full((2, 4, 3), bad) for bad in (-1e-6, INF, 2e15)),
     ),
     "radii": (*NO_NUMBER, 0, -1, [0.5, -0.5], 2.001),  # the last is around the shading point
+    **dict.fromkeys(
+        ("Scene.add_curves.radii", "Scene.add_point_cloud.radii"),
+        ("thick", None, NAN, INF, -0.1, [0.1, 0.1], [0.1, NAN, 0.1], [[0.1] * 3], *FAR),
+    ),
     "radius": (-0.1, NAN, *FAR),
     "Scene.add_sphere_light.radius": (0, -1, NAN, *FAR),
     "roughness": (-0.5, 1.5, NAN),
@@ -164,6 +169,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "sigma": ("rough", NAN, -INF),
     "spot_angle": (0.0, 4.0),
     "spread": (0.0, 4.0),
+    "subdivisions": (0, 17, 2.5),
     "tangents": ([0, 0, 0], [0, NAN, 0]),
     "theta_in": ([1.0, 0.0],),
     "theta_out": ([0.0, 57.0],),
@@ -182,7 +188,10 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "uvs": (np.zeros((3, 3)),),
     "values": (np.ones((1, 3, 2, 3)), -np.ones((2, 3, 2, 3))),
     "vertices": NO_POLYGON,
-    "Scene.add_mesh.vertices": (np.ones((3, 2)), np.full((3, 3), NAN), "floor", np.ones((3, 3), complex), FAR_MESH),
+    **dict.fromkeys(
+        ("Scene.add_mesh.vertices", "Scene.add_curves.points", "Scene.add_point_cloud.points"),
+        (np.ones((3, 2)), np.full((3, 3), NAN), "floor", np.ones((3, 3), complex), FAR_MESH),
+    ),
     "Scene.add_polygon_light.vertices": (
         *NO_POLYGON,
         [[0, 0, 0], [1, 0, 0], [2, 0, 0]],  # no area

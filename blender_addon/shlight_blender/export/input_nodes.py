@@ -16,7 +16,18 @@ from shlight.nodes.values import clamp, cross, dot, length, maximum, normalize, 
 
 from ..names import name_of
 from .camera import View
-from .mesh_attributes import COLOR, GENERATED, POINTINESS, RANDOM_PER_ISLAND, TANGENT
+from .mesh_attributes import (
+    COLOR,
+    CURVE_INTERCEPT,
+    CURVE_LENGTH,
+    CURVE_RANDOM,
+    CURVE_THICKNESS,
+    GENERATED,
+    IS_CURVE,
+    POINTINESS,
+    RANDOM_PER_ISLAND,
+    TANGENT,
+)
 from .nodes import Expression, NodeInputs, ReadNode
 from .object_values import RANDOM, property_color
 
@@ -194,6 +205,22 @@ GEOMETRY: dict[str, Callable[[], Expression]] = {
 }
 
 
+CURVES_INFO = {
+    "Is Strand": IS_CURVE,
+    "Intercept": CURVE_INTERCEPT,
+    "Length": CURVE_LENGTH,
+    "Thickness": CURVE_THICKNESS,
+    "Random": CURVE_RANDOM,
+}
+
+
+def _curves_info(inputs: NodeInputs) -> Expression:
+    if inputs.output.identifier in CURVES_INFO:
+        return nodes.attribute(CURVES_INFO[inputs.output.identifier]).x
+    inputs.remark(f"'{inputs.output.identifier}' is not supported; the normal is used")
+    return nodes.normal()
+
+
 def _object_info(inputs: NodeInputs) -> Expression:
     name = inputs.output.identifier
     if name == "Location":
@@ -280,6 +307,7 @@ INPUT_NODES: dict[str, ReadNode] = {
     "VERTEX_COLOR": _color_attribute,
     "NEW_GEOMETRY": lambda inputs: GEOMETRY[inputs.output.identifier](),
     "OBJECT_INFO": _object_info,
+    "HAIR_INFO": _curves_info,
     "FRESNEL": _fresnel,
     "LAYER_WEIGHT": _layer_weight,
     "LIGHT_FALLOFF": _light_falloff,

@@ -26,7 +26,7 @@ from ..compat import (
 )
 from ..names import name_of
 from ..report import Effect, ExportReport
-from .mesh_attributes import COLOR, mesh_attributes
+from .mesh_attributes import COLOR, OF_CURVES, mesh_attributes
 
 Integers = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.float32]
@@ -180,16 +180,21 @@ def object_arrays(
     return arrays
 
 
-def complete(arrays: MeshArrays, mesh_object: Any, names: Sequence[str], report: ExportReport) -> None:
-    """Reports attributes that the mesh has not; a colour is then transparent black, others are 0 with an alpha of 1."""
-    missing = [name for name in names if name not in arrays.attributes]
+def complete(
+    attributes: dict[str, FloatArray], corners: tuple[int, ...], shown: Any, names: Sequence[str], report: ExportReport
+) -> None:
+    """Reports attributes that an object has not; a colour is then transparent black, others are 0 with an alpha of 1.
+
+    corners: the shape of numbers of its corners, or of its points.
+    """
+    missing = [name for name in names if name not in attributes and name not in OF_CURVES]
     for name in missing:
         shown = name.removeprefix("\0")
         what = f"attribute or UV map '{shown}'" if name else "UV map"
         text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
-        report.add(f"Object '{name_of(mesh_object)}'", text, Effect.SLIGHT)
-    black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
-    arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
+        report.add(f"Object '{name_of(shown)}'", text, Effect.SLIGHT)
+    black = np.zeros((*corners, 4), dtype=np.float32)
+    attributes |= {name: black for name in missing if name.startswith(COLOR)}
 
 
 def flattened(arrays: MeshArrays, to_world: NDArray[np.float64]) -> MeshArrays | None:

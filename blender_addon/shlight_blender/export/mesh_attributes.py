@@ -101,6 +101,11 @@ UNDISPLACED_NORMAL = "\0undisplaced normal:"
 POINTINESS, RANDOM_PER_ISLAND = "\0pointiness:", "\0random per island:"
 SHAPES: dict[str, Callable[[Any], Array]] = {POINTINESS: pointiness, RANDOM_PER_ISLAND: random_per_island}
 
+# Numbers of hair, which are 0 on all else.
+IS_CURVE, CURVE_INTERCEPT, CURVE_LENGTH = "\0is curve:", "\0curve intercept:", "\0curve length:"
+CURVE_RANDOM, CURVE_THICKNESS = "\0curve random:", "\0curve thickness:"
+OF_CURVES = (IS_CURVE, CURVE_INTERCEPT, CURVE_LENGTH, CURVE_RANDOM, CURVE_THICKNESS)
+
 # Names of values and numbers of components by types of attributes.
 TYPES = {
     **dict.fromkeys(("FLOAT", "INT", "INT8", "BOOLEAN"), ("value", 1)),

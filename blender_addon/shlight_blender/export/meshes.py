@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import slot_materials, terminator_offsets
+from ..compat import curve_settings, slot_materials, terminator_offsets
 from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
@@ -23,6 +23,7 @@ from .materials import Surface, read_material
 from .mesh_arrays import MOST_TRIANGLES, MeshArrays, complete, doubled, flattened, object_arrays
 from .mesh_attributes import UV
 from .nodes import Surroundings
+from .strands import CURVES, HAIR, strands_of
 from .textured_meshes import with_even_emission
 
 Matrix = NDArray[np.float64]
@@ -60,6 +61,7 @@ class KeptMesh:
     surfaces: list[Surface]
     faces: NDArray[np.int64]  # how many of each surface
     is_of_place: bool  # it is cut into pieces, or displaced, for its first place
+    is_of_strands: bool  # see strands.py
     group: str | None  # see PassWishes.light_part
     report: ExportReport
     centers: NDArray[np.float64]  # of its triangles; none if there are too many to look for doubled ones
@@ -100,22 +102,31 @@ class SceneMeshes:
         if changes.materials:
             self._surfaces.clear()
 
-    def add(self, instance: Any, to_world: Matrix) -> None:
-        """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
+    def add(self, instance: Any, to_world: Matrix, kind: str = "") -> None:
+        """Notes one instance of the depsgraph that shows a mesh, or a kind of strands, at `to_world`."""
         mesh_object = instance.object
         if not np.isfinite(to_world).all():
             self.report.add(_place_of(mesh_object), "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
         own = (material and material.as_pointer() for material in materials)
-        key = (mesh_object.data.as_pointer(), self._group(mesh_object), terminator_offsets(mesh_object), *own)
+        curves = curve_settings(self._surroundings.depsgraph.scene_eval) if kind in (HAIR, CURVES) else {}
+        settings = (terminator_offsets(mesh_object), kind, *curves.values())
+        key = (mesh_object.data.as_pointer(), self._group(mesh_object), *settings, *own)
         flat = _is_flat(to_world)
+        if flat and kind:
+            self.report.add(_place_of(mesh_object), "it has no extent in a direction; left out", Effect.THING)
+            return
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
         if key not in self._seen:
             kept = self._kept_mesh(key, instance, to_world, surfaces)
-            self._seen[key] = kept or self._convert(instance, to_world, surfaces, flat)
+            self._seen[key] = kept or (
+                self._convert_strands(instance, kind, curves, surfaces)
+                if kind
+                else self._convert(instance, to_world, surfaces, flat)
+            )
         use = self._seen[key]
         use.transforms.append(np.eye(4) if flat else to_world)
         use.object_values.append(self._surroundings.object_values.of(instance))
@@ -135,7 +146,7 @@ class SceneMeshes:
         kept.transforms, kept.object_values, kept.labels = [], [], []
         if not self._changes.materials:
             return kept if not kept.is_of_place or np.array_equal(first_place, to_world) else None
-        if kept.is_of_place or _is_cut(surfaces) or _is_displaced(surfaces):
+        if kept.is_of_place or (not kept.is_of_strands and (_is_cut(surfaces) or _is_displaced(surfaces))):
             return None
         if not self._attributes(surfaces) <= kept.attributes:
             return None
@@ -162,7 +173,8 @@ class SceneMeshes:
         if arrays is not None and is_displaced:
             arrays = displace(arrays, [surface.displacement for surface in surfaces], to_world, values)
         if arrays is not None:
-            complete(arrays, shown, sorted(_attribute_names(surfaces)), report)
+            names = sorted(_attribute_names(surfaces))
+            complete(arrays.attributes, arrays.triangles.shape, shown, names, report)
         if arrays is not None and flat:
             arrays = flattened(arrays, to_world)
         if arrays is not None and is_cut:
@@ -172,7 +184,7 @@ class SceneMeshes:
         none = np.zeros(len(surfaces), dtype=np.int64)
         centers = np.empty((0, 3)) if arrays is None else _centers(arrays)
         of_place, group = is_cut or is_displaced, self._group(shown)
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, group, report, centers)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, False, group, report, centers)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             geometry_offset, shading_offset = terminator_offsets(shown)
@@ -190,6 +202,35 @@ class SceneMeshes:
                 terminator_shading_offset=shading_offset,
                 **_materials(made),
             )
+        return made
+
+    def _convert_strands(self, instance: Any, kind: str, curves: dict[str, Any], surfaces: list[Surface]) -> KeptMesh:
+        """The same of strands of a kind."""
+        shown, place, report = instance.object, _place_of(instance.object), ExportReport()
+        attributes, depsgraph = self._attributes(surfaces), self._surroundings.depsgraph
+        strands = strands_of(kind, shown, place, sorted(attributes), depsgraph, report)
+        owner, group = _owner(instance, depsgraph), self._group(shown)
+        none, centers = np.zeros(len(surfaces), dtype=np.int64), np.empty((0, 3))
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, False, True, group, report, centers)
+        if strands is None:
+            return made
+        names = sorted(_attribute_names(surfaces))
+        complete(strands.attributes, strands.radii.shape, shown, names, report)
+        slots = np.clip(strands.materials, 0, len(surfaces) - 1)
+        if any(surfaces[slot].emission.any() for slot in np.unique(slots)):
+            report.add(place, "its hair or points shine, and light nothing but by bounces", Effect.LIGHT)
+        shape, add = (strands.points, strands.radii), self._scene.add_point_cloud
+        if strands.first is not None:
+            add = partial(self._scene.add_curves, first=strands.first, **curves)
+        made.mesh = add(
+            *shape,
+            uvs={UV: strands.attributes[UV]} if UV in strands.attributes else None,
+            attributes=strands.attributes,
+            material_indices=slots,
+            transforms=np.empty((0, 4, 4)),
+            terminator_shading_offset=terminator_offsets(shown)[1],
+            **_materials(made),
+        )
         return made
 
     def _surface(self, material: Any) -> Surface:

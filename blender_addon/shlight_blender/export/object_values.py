@@ -17,8 +17,8 @@ START = 0xDEADBEEF + 13
 STEPS = (14, 11, 25, 16, 4, 14, 24)
 
 
-def hashed(*keys: int) -> int:
-    """A number of 32 bits for one or two others."""
+def hashed(*keys: Any) -> Any:
+    """A number of 32 bits for one or two others, which may be arrays of 64 bits."""
     start = (START + 4 * len(keys)) & ALL_BITS
     a, b, c = (start + (keys[0] & ALL_BITS)) & ALL_BITS, start, start
     if len(keys) > 1:
@@ -39,7 +39,7 @@ def hashed_text(text: bytes) -> int:
     return found
 
 
-def share(bits: int) -> float:
+def share(bits: Any) -> Any:
     """32 bits as a number in 0 … 1."""
     return bits / ALL_BITS
 

@@ -12,7 +12,7 @@ import numpy as np
 
 import shlight
 
-from ..compat import is_subdivided_adaptively
+from ..compat import curve_settings, is_subdivided_adaptively
 from ..frame import Frame, frame_of
 from ..names import name_of
 from ..passes import PassWishes, pass_wishes
@@ -25,23 +25,24 @@ from .meshes import SceneMeshes
 from .nodes import Surroundings
 from .seen_objects import Culling, culling_of, shares_of_picture
 from .settings import report_unsupported_settings
+from .strands import CURVES, HAIR, POINT_CLOUD, hair_systems
 from .world import SceneWorld, world_of
 
 # Called with what is being done while time passes; False: stop it.
 Waiting = Callable[[str], bool]
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
-# Types of objects that have a surface or volume which is not exported. Curves, texts, surfaces and metaballs are not
-# among them: the depsgraph gives their meshes as instances of their own.
+# Types of objects that are drawn, and the kinds of strands (strands.py) that they are. Of curves, texts, surfaces and
+# metaballs the depsgraph gives the meshes as instances of their own.
+DRAWN_TYPES = {"MESH": "", CURVES: CURVES, POINT_CLOUD: POINT_CLOUD}
+# Types of objects that have a surface or volume which is not exported.
 UNSUPPORTED_TYPES = {
-    "CURVES": "hair curves",
-    "POINTCLOUD": "point clouds",
     "VOLUME": "volumes",
     "GPENCIL": "grease pencil drawings",
     "GREASEPENCIL": "grease pencil drawings",
 }
-# Filters of a view layer that leave some of them out of Cycles' picture too.
-FILTERS = {"CURVES": "use_strand", "VOLUME": "use_volumes"}
+# Filters of a view layer that leave some of both out of Cycles' picture too.
+FILTERS = {"MESH": "use_solid", CURVES: "use_strand", "VOLUME": "use_volumes"}
 
 # Flags of an object with the value at which they change nothing.
 VISIBILITY = {
@@ -70,13 +71,17 @@ class _State(NamedTuple):
         moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
         override = view_layer.material_override
         bounces = scene.shlight.max_bounces if viewport is None else scene.shlight.preview_max_bounces
-        seen = (own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport))
+        seen = (
+            own.object.as_pointer()
+            for own in depsgraph.object_instances
+            if _is_seen(own, viewport) or _is_hairy(own, viewport, depsgraph)
+        )
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
             (override and override.as_pointer(), bounces > 0),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
-            (view_layer.use_solid, culling, *seen),
+            (view_layer.use_solid, view_layer.use_strand, culling, *curve_settings(scene).values(), *seen),
         )
 
 
@@ -188,13 +193,12 @@ class ExportedScene:
             self._told = set()
         for instance in depsgraph.object_instances:
             ask()
-            if not _is_seen(instance, viewport):
-                continue
+            is_seen = _is_seen(instance, viewport)
             if instance.object.type == "LIGHT":
-                if changes.lamps:
+                if is_seen and changes.lamps:
                     self._is_lit["lamps"] |= self._add_lamp(instance)
-            elif walks_meshes:
-                self._add_object(instance, depsgraph.view_layer_eval)
+            elif walks_meshes and (is_seen or _is_hairy(instance, viewport, depsgraph)):
+                self._add_object(instance, depsgraph, viewport)
         if walks_meshes:
             self._is_lit["objects"] = self.meshes.finish(ask)
             self._reports["objects"].extend(self.meshes.report)
@@ -204,20 +208,23 @@ class ExportedScene:
         _report_light_linking((instance.object, instancer), f"Light '{name_of(instance.object)}'", report)
         return add_lamp(self.scene, instance.object, _to_world(instance), report, self._surroundings, instancer)
 
-    def _add_object(self, instance: Any, view_layer: Any) -> None:
-        seen, report = instance.object, self._reports["objects"]
+    def _add_object(self, instance: Any, depsgraph: Any, viewport: Any) -> None:
+        seen, view_layer, report = instance.object, depsgraph.view_layer_eval, self._reports["objects"]
         if self._culling is not None and self._culling.leaves_out(seen, _to_world(instance)):
             return
-        if seen.type == "MESH":
+        is_drawn = _is_seen(instance, viewport) and getattr(view_layer, FILTERS.get(seen.type, ""), True)
+        if seen.type in DRAWN_TYPES:
             instancer = _instancer(instance)
             # Instances share one address, which is not that of what they show.
             key = (seen.original.as_pointer(), instancer and instancer.as_pointer())
             if key not in self._told:
                 self._told.add(key)
                 _report_object(seen, instancer, view_layer, report)
-            if view_layer.use_solid:
-                self.meshes.add(instance, _to_world(instance))
-        elif seen.type in UNSUPPORTED_TYPES and getattr(view_layer, FILTERS.get(seen.type, ""), True):
+            if is_drawn:
+                self.meshes.add(instance, _to_world(instance), DRAWN_TYPES[seen.type])
+            if view_layer.use_strand and _is_hairy(instance, viewport, depsgraph):
+                self.meshes.add(instance, _to_world(instance), HAIR)
+        elif seen.type in UNSUPPORTED_TYPES and is_drawn:
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{name_of(seen)}'", text, Effect.THING)
 
@@ -284,9 +291,19 @@ def _asking(waiting: Waiting | None) -> Callable[[], None]:
     return ask
 
 
-def _is_seen(instance: Any, viewport: Any) -> bool:
+def _is_hairy(instance: Any, viewport: Any, depsgraph: Any) -> bool:
+    """Whether hair of an instance's particle systems is seen."""
+    return (
+        instance.object.type == "MESH"
+        and len(instance.object.particle_systems) > 0
+        and _is_seen(instance, viewport, "show_particles")
+        and bool(hair_systems(instance.object, depsgraph))
+    )
+
+
+def _is_seen(instance: Any, viewport: Any, switch: str = "show_self") -> bool:
     """Whether an instance of the depsgraph is seen, in renders or, if one is given, in a viewport."""
-    if not instance.show_self:
+    if not getattr(instance, switch):
         return False
     if viewport is None:
         return instance.is_instance or not instance.object.hide_render
@@ -310,11 +327,6 @@ def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportRep
             report.add(place, text, Effect.THING)
     if view_layer.use_solid and is_subdivided_adaptively(seen, view_layer.id_data):
         report.add(place, "adaptive subdivision is not supported; its mesh is as its modifiers leave it")
-    for system in seen.particle_systems if view_layer.use_strand else ():
-        settings = system.settings
-        if settings.type == "HAIR" and settings.render_type == "PATH":
-            hair = f"{place}, particle system '{name_of(system)}'"
-            report.add(hair, "hair is not supported; left out", Effect.THING)
     _report_light_linking((seen, instancer), place, report)
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Triangle meshes with materials, placed once or many times.
+// Triangle meshes, hair and clouds of spheres with materials, placed once or many times.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@
 
 namespace shlight {
 
-/// Numbers on a mesh that shader programs read, linear over each triangle.
+/// Numbers on a mesh that shader programs read, linear over each triangle and between points of a curve.
 struct MeshAttribute {
     std::uint32_t components;   ///< 1 … 4
-    std::vector<float> values;  ///< `components` for each vertex, or for each triangle, or for each triangle's corner
+    std::vector<float> values;  ///< `components` for each vertex, or for each part, or for each triangle's corner
 };
 
 /// Numbers that AOVs output for an object or a material.
@@ -70,18 +70,35 @@ struct MeshShader {
     static constexpr std::uint32_t kNoAttribute = 0xFFFFFFFFU;
 };
 
-/// Triangles with normals and attributes.
+/// Triangles with normals, or curves or spheres, with attributes. Its parts are triangles, curves or spheres.
 struct MeshShape {
-    std::vector<Vec3f> vertices;
+    std::vector<Vec3f> vertices;      ///< of triangles, or points of curves, or middles of spheres
     std::vector<Triangle> triangles;  ///< vertex indices
+    SurfaceForm form = SurfaceForm::triangles;
+    std::vector<float> radii;          ///< of curves and spheres: one per vertex
+    std::vector<std::uint32_t> first;  ///< of curves: the first vertex of each, which has two or more
+    std::uint32_t subdivisions = 5;    ///< see RoundParts
     /// Shading normals of any length in the mesh's frame: one per vertex, three per triangle, or none (flat).
     std::vector<Vec3f> vertex_normals, corner_normals;
     std::vector<MeshAttribute> attributes;
     std::uint32_t uv = MeshShader::kNoAttribute;  ///< the attribute that is Pass::uv
-    std::vector<std::uint32_t> material_indices;  ///< one per triangle, or none (all 0)
+    std::vector<std::uint32_t> material_indices;  ///< one per part, or none (all 0)
 
-    std::uint32_t material_index(std::size_t triangle) const {
-        return material_indices.empty() ? 0 : material_indices[triangle];
+    bool is_curved() const { return form == SurfaceForm::ribbons || form == SurfaceForm::tubes; }
+    std::size_t part_count() const {
+        return form == SurfaceForm::triangles ? triangles.size() : is_curved() ? first.size() : vertices.size();
+    }
+    /// The part of RayHit::triangle.
+    std::size_t part(std::uint32_t number) const {
+        return is_curved() ? static_cast<std::size_t>(std::ranges::upper_bound(first, number) - first.begin()) - 1
+                           : number;
+    }
+    /// The vertex behind the last one of a curve.
+    std::size_t curve_end(std::size_t curve) const {
+        return curve + 1 < first.size() ? first[curve + 1] : vertices.size();
+    }
+    std::uint32_t material_index(std::size_t part) const {
+        return material_indices.empty() ? 0 : material_indices[part];
     }
 };
 
@@ -93,7 +110,7 @@ struct TerminatorOffsets {
 };
 
 /// The materials and the instances of a shape. Surfaces are two-sided: triangles are turned to the viewer, and with
-/// them their normals.
+/// them their normals. Curves and spheres are seen to shine where they emit, and light nothing but by bounces.
 struct MeshUse {
     std::vector<Bsdf> bsdfs = {Bsdf()};         ///< one per material, or one for all
     std::vector<Emission> emission = {Rgb(0)};  ///< one per material, or one for all

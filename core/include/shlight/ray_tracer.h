@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rays against triangles: what the renderer needs of Embree, without its headers.
+// Rays against triangles, curves and spheres: what the renderer needs of Embree, without its headers.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,8 @@
 #include <memory>
 #include <span>
 #include <vector>
+
+#include <glm/vec4.hpp>
 
 #include "shlight/parallel.h"
 #include "shlight/types.h"
@@ -26,30 +28,52 @@ struct Ray {
     bool empty() const { return t_max < t_min; }
 };
 
-/// A ray's first hit. The point is (1 - u - v) · corner 0 + u · corner 1 + v · corner 2.
+/// A surface's parts. Curves are Catmull-Rom splines of points and radii.
+enum class SurfaceForm : std::uint8_t {
+    triangles,
+    ribbons,  ///< flat curves, turned to each ray
+    tubes,    ///< curves of round cross-section
+    spheres,
+};
+
+/// A ray's first hit. On a triangle the point is (1 - u - v) · corner 0 + u · corner 1 + v · corner 2; on a curve u
+/// runs from 0 to 1 between two of its points, and across a ribbon v from -1 to 1.
 struct RayHit {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
     std::uint32_t instance = kNone;  ///< index of the TracedInstance, kNone for a miss
-    std::uint32_t triangle = 0;
+    std::uint32_t triangle = 0;      ///< or the vertex where a curve's segment begins, or at the middle of a sphere
     float u = 0, v = 0;
     float distance = 0;  ///< t of the ray
+    Vec3f normal{0};     ///< of a tube or a sphere, in the instance's frame, outwards, of any length
 
     bool missed() const { return instance == kNone; }
 };
 
-/// Triangles in one frame and Embree's tree over them. Immutable; any number of tracers may share it.
-class TriangleTree {
+/// Curves or spheres; they are met from outside alone, as in Cycles.
+struct RoundParts {
+    SurfaceForm form;
+    std::vector<glm::vec4> points;        ///< with radii. Each curve has its first and its last point twice.
+    std::vector<std::uint32_t> segments;  ///< of curves: for each the point before the one where it begins
+    std::vector<std::uint32_t> numbers;   ///< RayHit::triangle of each segment or sphere
+    std::uint32_t subdivisions;           ///< pieces of a ribbon's segment, 1 … 16
+};
+
+/// Triangles, curves or spheres in one frame and Embree's tree over them. Immutable; any number of tracers may share
+/// it.
+class SurfaceTree {
   public:
     /// Copies what it needs. Builds with the threads of the tbb::task_arena that it is called in.
     /// numbers: RayHit::triangle of each triangle, or none: its index.
     /// Throws std::runtime_error when Embree fails, std::bad_alloc when memory runs out, RenderCancelled once it is to
     /// end.
-    TriangleTree(std::span<const Vec3f> vertices, std::span<const Triangle> triangles,
-                 std::vector<std::uint32_t> numbers = {}, const Stopped& stopped = {});
-    ~TriangleTree();
-    TriangleTree(const TriangleTree&) = delete;
-    TriangleTree& operator=(const TriangleTree&) = delete;
+    SurfaceTree(std::span<const Vec3f> vertices, std::span<const Triangle> triangles,
+                std::vector<std::uint32_t> numbers = {}, const Stopped& stopped = {});
+    /// The same of other parts.
+    explicit SurfaceTree(RoundParts parts, const Stopped& stopped = {});
+    ~SurfaceTree();
+    SurfaceTree(const SurfaceTree&) = delete;
+    SurfaceTree& operator=(const SurfaceTree&) = delete;
 
   private:
     friend class RayTracer;
@@ -57,16 +81,16 @@ class TriangleTree {
     std::unique_ptr<const Impl> impl_;
 };
 
-/// Triangles placed in the world.
+/// Surfaces placed in the world.
 struct TracedInstance {
-    std::shared_ptr<const TriangleTree> tree;  ///< null: nothing
-    glm::dmat4 to_world;                       ///< affine
+    std::shared_ptr<const SurfaceTree> tree;  ///< null: nothing
+    glm::dmat4 to_world;                      ///< affine
 };
 
 /// Immutable; any number of threads may trace at a time.
 class RayTracer {
   public:
-    /// Builds a tree over the instances. Throws what TriangleTree throws.
+    /// Builds a tree over the instances. Throws what SurfaceTree throws.
     explicit RayTracer(std::vector<TracedInstance> instances, const Stopped& stopped = {});
     ~RayTracer();
     RayTracer(const RayTracer&) = delete;

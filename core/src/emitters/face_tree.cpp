@@ -45,7 +45,7 @@ FaceTree::FaceTree(std::span<const Vec3d> vertices, std::span<const Triangle> tr
         leaf_of_[faces_[i].triangle] = i;
     }
     const std::vector<Vec3f> traced(vertices.begin(), vertices.end());
-    auto tree = std::make_shared<const TriangleTree>(traced, triangles, std::vector<std::uint32_t>(), stopped);
+    auto tree = std::make_shared<const SurfaceTree>(traced, triangles, std::vector<std::uint32_t>(), stopped);
     rays_ = std::make_unique<const RayTracer>(std::vector<TracedInstance>{{std::move(tree), glm::dmat4(1)}}, stopped);
 }
 

@@ -66,7 +66,7 @@ struct PartView {
 class FaceTree {
   public:
     /// In the world frame; radiance: one for each triangle. closed, one_sided: see EmitterLevels.
-    /// Throws what TriangleTree throws.
+    /// Throws what SurfaceTree throws.
     FaceTree(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
              bool closed, bool one_sided, const Stopped& stopped = {});
 

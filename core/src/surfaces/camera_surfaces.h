@@ -75,11 +75,7 @@ struct SurfaceLobe {
         return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
     }
     /// The point as the side has it from which it takes light.
-    SurfacePoint lit_side(const SurfacePoint& point) const {
-        const double sign = translucent ? -1 : 1;
-        return {point.position, sign * point.geometric_normal, sign * point.shading_normal, point.error,
-                point.material};
-    }
+    SurfacePoint lit_side(const SurfacePoint& point) const { return translucent ? point.turned() : point; }
 };
 
 /// Keeps its memory from batch to batch; one per thread.

@@ -2,6 +2,7 @@
 #include "surfaces/compiled_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
@@ -73,26 +74,58 @@ std::vector<bool> transparent_materials(const SceneMesh& mesh) {
     return std::ranges::find(transparent, true) == transparent.end() ? std::vector<bool>() : transparent;
 }
 
-/// The mesh's triangles, or those of them that let light through; null: there are none.
-std::shared_ptr<const TriangleTree> tree_of(const CompiledMesh& compiled, const std::vector<bool>& transparent,
-                                            bool wanted, const Stopped& stopped) {
+/// The curves or spheres for which wanted(part).
+template <class Wanted>
+RoundParts round_parts(const CompiledMesh& compiled, const Wanted& wanted) {
     const MeshShape& shape = *compiled.mesh->shape;
+    RoundParts parts = {shape.form, {}, {}, {}, shape.subdivisions};
+    const auto add = [&](std::size_t vertex) {
+        parts.points.emplace_back(compiled.vertices()[vertex], compiled.radius_scale * shape.radii[vertex]);
+    };
+    for (std::size_t part = 0; part < shape.part_count(); ++part) {
+        if (!wanted(part)) {
+            continue;
+        }
+        const std::size_t first = shape.is_curved() ? shape.first[part] : part;
+        const std::size_t last = shape.is_curved() ? shape.curve_end(part) - 1 : part;
+        if (shape.is_curved()) add(first);
+        for (std::size_t vertex = first; vertex <= last; ++vertex) {
+            if (vertex < last) parts.segments.push_back(static_cast<std::uint32_t>(parts.points.size()) - 1);
+            if (vertex < last || !shape.is_curved()) parts.numbers.push_back(static_cast<std::uint32_t>(vertex));
+            add(vertex);
+        }
+        if (shape.is_curved()) add(last);
+    }
+    return parts;
+}
+
+/// The mesh's surfaces, or those of them that let light through; null: there are none.
+std::shared_ptr<const SurfaceTree> tree_of(const CompiledMesh& compiled, const std::vector<bool>& transparent,
+                                           bool wanted, const Stopped& stopped) {
+    const MeshShape& shape = *compiled.mesh->shape;
+    const auto is_wanted = [&](std::size_t part) {
+        return (!transparent.empty() && transparent[shape.material_index(part)]) == wanted;
+    };
+    if (shape.form != SurfaceForm::triangles) {
+        RoundParts parts = round_parts(compiled, is_wanted);
+        return parts.points.empty() ? nullptr : std::make_shared<const SurfaceTree>(std::move(parts), stopped);
+    }
     if (transparent.empty()) {
         return wanted ? nullptr
-                      : std::make_shared<const TriangleTree>(compiled.vertices(), shape.triangles,
-                                                             std::vector<std::uint32_t>(), stopped);
+                      : std::make_shared<const SurfaceTree>(compiled.vertices(), shape.triangles,
+                                                            std::vector<std::uint32_t>(), stopped);
     }
     std::vector<Triangle> triangles;
     std::vector<std::uint32_t> numbers;
     for (std::uint32_t i = 0; i < shape.triangles.size(); ++i) {
-        if (transparent[shape.material_index(i)] == wanted) {
+        if (is_wanted(i)) {
             triangles.push_back(shape.triangles[i]);
             numbers.push_back(i);
         }
     }
     return triangles.empty()
                ? nullptr
-               : std::make_shared<const TriangleTree>(compiled.vertices(), triangles, std::move(numbers), stopped);
+               : std::make_shared<const SurfaceTree>(compiled.vertices(), triangles, std::move(numbers), stopped);
 }
 
 /// Adds the flat parts of a mesh as lights, unless they have too many corners or overlap; returns whether it has.
@@ -214,6 +247,7 @@ std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const Sce
         compiled->world_vertices =
             std::make_shared<const std::vector<Vec3f>>(moved(shape.vertices, mesh->transforms.front()));
     }
+    compiled->radius_scale = baked ? std::cbrt(std::abs(glm::determinant(glm::dmat3(mesh->transforms.front())))) : 1.0;
     const std::vector<bool> transparent = transparent_materials(*mesh);
     if (is_in_place && transparent_materials(*before->mesh) == transparent) {
         compiled->opaque = before->opaque;

@@ -20,7 +20,8 @@ struct CompiledMesh {
     std::shared_ptr<const SceneMesh> mesh;                     ///< the same, in the scene's frame
     Vec3d origin;                                              ///< of that frame
     std::shared_ptr<const std::vector<Vec3f>> world_vertices;  ///< null: rays meet the mesh in its own frame
-    std::shared_ptr<const TriangleTree> opaque, transparent;   ///< null: there are no such triangles
+    double radius_scale = 1;                                   ///< of curves and spheres there
+    std::shared_ptr<const SurfaceTree> opaque, transparent;    ///< null: there are no such surfaces
     std::vector<Light> lights;  ///< MeshLight::instance counts the instances of this mesh
 
     bool is_baked() const { return world_vertices != nullptr; }
@@ -29,7 +30,7 @@ struct CompiledMesh {
 };
 
 /// origin: see CompiledScene::origin(); before: the mesh of the same shape in the scene before, or null.
-/// Throws what TriangleTree throws.
+/// Throws what SurfaceTree throws.
 std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& given, const Vec3d& origin,
                                                  const std::shared_ptr<const CompiledMesh>& before,
                                                  const Stopped& stopped);

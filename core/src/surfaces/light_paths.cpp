@@ -105,8 +105,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
         return;
     }
-    const Vec3d origin =
-        sampled.reflected ? surface.point.off_surface() : surface.point.position - surface.point.error * flat;
+    const Vec3d origin = sampled.reflected ? surface.point.off_surface() : surface.point.behind_surface();
     const Ray next = {Vec3f(origin), 0, Vec3f(way)};
     const PathKind by = sampled.reflected ? PathKind::glossy : PathKind::transmission;
     const Rgb weight = surface.throughput * color(surface, refraction.weight);

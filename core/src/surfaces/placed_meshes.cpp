@@ -11,6 +11,7 @@
 #include "base/ray_rounding.h"
 #include "base/scene_range.h"
 #include "base/transforms.h"
+#include "surfaces/round_places.h"
 
 namespace shlight {
 namespace {
@@ -31,11 +32,6 @@ Placement place(std::uint32_t mesh, std::uint32_t number, std::uint32_t first_ma
 
 /// Component of an attribute as RGBA; 1 where it is not given.
 constexpr int kAlpha = 3;
-
-Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : fallback;
-}
 
 glm::dmat3 normals_to_world(const Placement& placement) {
     return glm::transpose(glm::dmat3(placement.to_object));
@@ -120,6 +116,9 @@ Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point
 SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) const {
     assert(!hit.missed());
     const Placement& placement = placements_[hit.instance];
+    if (mesh_of(placement).shape->form != SurfaceForm::triangles) {
+        return round_surface(hit, direction);
+    }
     const std::array<double, 3> weights = weights_of(hit);
     const std::array<Vec3d, 3> corners = this->corners(hit);
     const Vec3d position = weighted(corners, weights);
@@ -149,6 +148,27 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
             placement.first_material + mesh_of(placement).shape->material_index(hit.triangle)};
 }
 
+/// A ribbon is lit where it is met, but rays leave it from the tube that it stands for, which those that go to the side
+/// of the normal do not meet again, however the ribbon turns to them.
+SurfacePoint PlacedMeshes::round_surface(const RayHit& hit, const Vec3f& direction) const {
+    const Placement& placement = placements_[hit.instance];
+    const CompiledMesh& mesh = *meshes_[placement.mesh];
+    const MeshShape& shape = *mesh.mesh->shape;
+    const glm::dmat4 to_world = placement.baked ? glm::dmat4(1) : placement.to_world;
+    const glm::dmat4 to_object = placement.baked ? glm::dmat4(1) : placement.to_object;
+    const RoundPlace middle = round_place(shape, mesh.vertices(), mesh.radius_scale, hit);
+    const OutwardNormal own = outward_normal(middle, hit, transform_vector(to_object, Vec3d(direction)));
+    const Vec3d outwards = transform_vector(to_world, middle.radius * own.normal);
+    const Vec3d lift = transform_vector(to_world, middle.radius * own.lift);
+    const Vec3d position = transform_point(to_world, middle.position) + outwards - lift;
+    const Vec3d normal =
+        normalized_or(glm::transpose(glm::dmat3(to_object)) * own.normal, -glm::normalize(Vec3d(direction)));
+    const double scale = placement.condition * (largest_component(position) + placement.origin);
+    const double radius = glm::length(outwards);
+    const std::uint32_t material = placement.first_material + shape.material_index(shape.part(hit.triangle));
+    return {position, normal, normal, kRayRounding * scale + kRoundRounding * radius, material, lift, 2 * radius};
+}
+
 SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& normal, double length,
                                      const Ray& ray) const {
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
@@ -159,6 +179,10 @@ SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& nor
     const double most = 2 * length;
     const double t = away * approach > 0 && away / approach < most ? away / approach : most;
     const Vec3d position = origin + t * direction;
+    SurfacePlace result = {place.hit, position, -direction};
+    if (mesh_of(placements_[place.hit.instance]).shape->form != SurfaceForm::triangles) {
+        return result;
+    }
     const std::array<Vec3d, 3> corners = this->corners(place.hit);
     const Vec3d u = corners[1] - corners[0];
     const Vec3d v = corners[2] - corners[0];
@@ -167,7 +191,6 @@ SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& nor
     const double uv = glm::dot(u, v);
     const double vv = glm::dot(v, v);
     const double determinant = uu * vv - uv * uv;
-    SurfacePlace result = {place.hit, position, -direction};
     if (determinant > 0) {
         const double su = glm::dot(step, u);
         const double sv = glm::dot(step, v);
@@ -186,12 +209,18 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
     const std::size_t size = attribute.values.size();
     const std::uint32_t own = attribute.components == 1 && component < 3 ? 0 : component;
     const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + own]; };
-    const std::size_t triangle = hit.triangle;
-    const Triangle& vertices = mesh.triangles[triangle];
-    const std::array<double, 3> weights = weights_of(hit);
     if (own >= attribute.components || size == 0) {
         return component == kAlpha ? 1.0F : 0.0F;
     }
+    const std::size_t triangle = hit.triangle;
+    if (mesh.form != SurfaceForm::triangles) {
+        const bool is_of_points = size == mesh.vertices.size() * attribute.components;
+        return !is_of_points      ? value(mesh.part(hit.triangle))
+               : mesh.is_curved() ? (1 - hit.u) * value(triangle) + hit.u * value(triangle + 1)
+                                  : value(triangle);
+    }
+    const Triangle& vertices = mesh.triangles[triangle];
+    const std::array<double, 3> weights = weights_of(hit);
     double sum = 0;
     if (size == 3 * mesh.triangles.size() * attribute.components) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -217,6 +246,12 @@ Vec3d PlacedMeshes::uv(const RayHit& hit) const {
 }
 
 Vec3d PlacedMeshes::growth_of_u(const RayHit& hit) const {
+    const Placement& placement = placements_[hit.instance];
+    const CompiledMesh& mesh = *meshes_[placement.mesh];
+    if (mesh.mesh->shape->form != SurfaceForm::triangles) {
+        const Vec3d along = round_place(*mesh.mesh->shape, mesh.vertices(), mesh.radius_scale, hit).along;
+        return placement.baked ? along : transform_vector(placement.to_world, along);
+    }
     if (mesh_of(placements_[hit.instance]).shape->uv == MeshShader::kNoAttribute) {
         return Vec3d(0);
     }
@@ -298,6 +333,9 @@ double PlacedMeshes::to_object_number(const Placement& placement, std::uint32_t 
 }
 
 bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const {
+    if (mesh_of(placements_[hit.instance]).shape->form != SurfaceForm::triangles) {
+        return false;
+    }
     const std::array<Vec3d, 3> corners = this->corners(hit);
     const Vec3d normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     return (glm::dot(normal, towards_viewer) < 0) != placements_[hit.instance].mirrored;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Meshes where they stand in a scene: what a ray meets there, as shading wants it.
+// Meshes, curves and spheres where they stand in a scene: what a ray meets there, as shading wants it.
 #pragma once
 
 #include <algorithm>
@@ -113,9 +113,11 @@ class PlacedMeshes {
               std::span<float> out) const;
     /// The mesh's own at the corners of the hit triangle, in its frame, of no particular length; none: it is flat.
     std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
+    /// surface() of curves and spheres.
+    SurfacePoint round_surface(const RayHit& hit, const Vec3f& direction) const;
     /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
-    /// ∂P/∂u up to its length; 0 where u and v do not say.
+    /// ∂P/∂u up to its length, of curves the way along them; 0 where u and v do not say.
     Vec3d growth_of_u(const RayHit& hit) const;
     Vec3d around_axis(const RayHit& hit, const Vec3d& position) const;
     /// place: see ShaderReader.

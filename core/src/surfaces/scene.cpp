@@ -284,7 +284,7 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
         new CompiledScene(origin, lamps, environment_, environment_visible_, environment_group_));
     std::vector<std::shared_ptr<const SceneMesh>> meshes;
     for (const auto& [number, mesh] : meshes_) {
-        if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {
+        if (mesh->shape->part_count() > 0 && !mesh->transforms.empty()) {
             meshes.push_back(mesh);
             compiled->mesh_numbers_.push_back(number);
         }

@@ -23,6 +23,25 @@ void check_per_material(const char* name, std::size_t size, std::size_t material
     }
 }
 
+void check_round(const MeshShape& shape) {
+    check_size("radii", shape.radii.size(), shape.form == SurfaceForm::triangles ? 0 : shape.vertices.size());
+    for (const float radius : shape.radii) {
+        if (!(radius >= 0 && double{radius} <= kFarthest)) {
+            reject("radii must be in 0 … 1e10");
+        }
+    }
+    for (std::size_t curve = 0; curve < shape.first.size(); ++curve) {
+        const std::uint32_t begin = shape.first[curve];
+        if ((curve == 0 && begin > 0) || begin + std::size_t{2} > shape.curve_end(curve)) {
+            reject("first must begin with 0 and leave two points or more to each curve; curve " +
+                   std::to_string(curve) + " begins with point " + std::to_string(begin));
+        }
+    }
+    if (shape.is_curved() && shape.first.empty() && !shape.vertices.empty()) {
+        reject("first must name the first point of a curve");
+    }
+}
+
 void check_attributes(const MeshShape& shape) {
     for (const MeshAttribute& attribute : shape.attributes) {
         if (attribute.components < 1 || attribute.components > 4) {
@@ -30,9 +49,8 @@ void check_attributes(const MeshShape& shape) {
         }
         const std::size_t count = attribute.values.size() / attribute.components;
         if (count * attribute.components != attribute.values.size() ||
-            (count != shape.vertices.size() && count != shape.triangles.size() &&
-             count != 3 * shape.triangles.size())) {
-            reject("attributes must have one entry per vertex, triangle or triangle's corner");
+            (count != shape.vertices.size() && count != shape.part_count() && count != 3 * shape.triangles.size())) {
+            reject("attributes must have one entry per vertex, part or triangle's corner");
         }
     }
 }
@@ -85,8 +103,10 @@ void check_scale(const glm::dmat4& transform) {
 
 Box bounds(const MeshShape& shape, const MeshUse& use) {
     Box local;
-    for (const Vec3f& v : shape.vertices) {
-        local.add(Vec3d(v));
+    for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
+        const double radius = shape.radii.empty() ? 0.0 : double{shape.radii[i]};
+        local.add(Vec3d(shape.vertices[i]) - radius);
+        local.add(Vec3d(shape.vertices[i]) + radius);
     }
     Box world;
     for (const glm::dmat4& transform : use.transforms) {
@@ -101,7 +121,7 @@ Box bounds(const MeshShape& shape, const MeshUse& use) {
 
 void check_shape(const MeshShape& shape) {
     for (const Vec3f& v : shape.vertices) {
-        check_position("vertices", Vec3d(v));
+        check_position(shape.form == SurfaceForm::triangles ? "vertices" : "points", Vec3d(v));
     }
     for (const Triangle& triangle : shape.triangles) {
         const std::uint32_t largest = std::max({triangle.x, triangle.y, triangle.z});
@@ -119,11 +139,12 @@ void check_shape(const MeshShape& shape) {
         check_all_finite("normals", shape.corner_normals);
     }
     if (!shape.material_indices.empty()) {
-        check_size("material_indices", shape.material_indices.size(), shape.triangles.size());
+        check_size("material_indices", shape.material_indices.size(), shape.part_count());
     }
     if (shape.uv != MeshShader::kNoAttribute && shape.uv >= shape.attributes.size()) {
         reject("uv: there is no such attribute");
     }
+    check_round(shape);
     check_attributes(shape);
 }
 

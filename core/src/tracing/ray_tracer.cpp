@@ -78,6 +78,37 @@ Geometry triangle_geometry(RTCDevice device, std::span<const Vec3f> vertices, st
     return geometry;
 }
 
+/// Leaves out hits from within.
+void meet_from_outside(const RTCFilterFunctionNArguments* given) {
+    for (unsigned i = 0; i < given->N; ++i) {
+        const Vec3f direction(RTCRayN_dir_x(given->ray, given->N, i), RTCRayN_dir_y(given->ray, given->N, i),
+                              RTCRayN_dir_z(given->ray, given->N, i));
+        const Vec3f normal(RTCHitN_Ng_x(given->hit, given->N, i), RTCHitN_Ng_y(given->hit, given->N, i),
+                           RTCHitN_Ng_z(given->hit, given->N, i));
+        given->valid[i] = glm::dot(direction, normal) > 0 ? 0 : given->valid[i];
+    }
+}
+
+Geometry round_geometry(RTCDevice device, const RoundParts& parts) {
+    Geometry geometry(
+        rtcNewGeometry(device, parts.form == SurfaceForm::ribbons ? RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE
+                               : parts.form == SurfaceForm::tubes ? RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE
+                                                                  : RTC_GEOMETRY_TYPE_SPHERE_POINT));
+    std::ranges::copy(parts.points, new_buffer<glm::vec4>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX,
+                                                          RTC_FORMAT_FLOAT4, parts.points.size()));
+    if (parts.form != SurfaceForm::spheres) {
+        std::ranges::copy(parts.segments, new_buffer<std::uint32_t>(device, geometry.get(), RTC_BUFFER_TYPE_INDEX,
+                                                                    RTC_FORMAT_UINT, parts.segments.size()));
+        rtcSetGeometryTessellationRate(geometry.get(), static_cast<float>(parts.subdivisions));
+    }
+    if (parts.form != SurfaceForm::ribbons) {
+        rtcSetGeometryIntersectFilterFunction(geometry.get(), meet_from_outside);
+        rtcSetGeometryOccludedFilterFunction(geometry.get(), meet_from_outside);
+    }
+    rtcCommitGeometry(geometry.get());
+    return geometry;
+}
+
 Geometry instance_geometry(RTCDevice device, RTCScene instanced, const glm::dmat4& to_world) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), instanced);
@@ -142,12 +173,13 @@ void trace_packets(RTCScene scene, std::span<const Ray> rays, std::span<std::uin
 
 }  // namespace
 
-class TriangleTree::Impl {
+class SurfaceTree::Impl {
   public:
-    Impl(std::span<const Vec3f> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> wanted,
-         const Stopped& stopped)
+    /// make: the geometry with a device.
+    template <class Make>
+    Impl(const Make& make, std::vector<std::uint32_t> wanted, const Stopped& stopped)
         : device(shared_device()), scene(new_scene(device.get())), numbers(std::move(wanted)) {
-        rtcAttachGeometry(scene.get(), triangle_geometry(device.get(), vertices, triangles).get());
+        rtcAttachGeometry(scene.get(), make(device.get()).get());
         build(device.get(), scene.get(), stopped);
     }
 
@@ -156,11 +188,17 @@ class TriangleTree::Impl {
     std::vector<std::uint32_t> numbers;
 };
 
-TriangleTree::TriangleTree(std::span<const Vec3f> vertices, std::span<const Triangle> triangles,
-                           std::vector<std::uint32_t> numbers, const Stopped& stopped)
-    : impl_(std::make_unique<const Impl>(vertices, triangles, std::move(numbers), stopped)) {}
+SurfaceTree::SurfaceTree(std::span<const Vec3f> vertices, std::span<const Triangle> triangles,
+                         std::vector<std::uint32_t> numbers, const Stopped& stopped)
+    : impl_(
+          std::make_unique<const Impl>([&](RTCDevice device) { return triangle_geometry(device, vertices, triangles); },
+                                       std::move(numbers), stopped)) {}
 
-TriangleTree::~TriangleTree() = default;
+SurfaceTree::SurfaceTree(RoundParts parts, const Stopped& stopped)
+    : impl_(std::make_unique<const Impl>([&](RTCDevice device) { return round_geometry(device, parts); },
+                                         std::move(parts.numbers), stopped)) {}
+
+SurfaceTree::~SurfaceTree() = default;
 
 class RayTracer::Impl {
   public:
@@ -213,8 +251,9 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
             const std::uint32_t instance = query.hit.instID[0];
             const std::vector<std::uint32_t>& numbers = impl_->instances[instance].tree->impl_->numbers;
-            hits[i] = {instance, numbers.empty() ? query.hit.primID : numbers[query.hit.primID], query.hit.u,
-                       query.hit.v, query.ray.tfar};
+            hits[i] = {instance,       numbers.empty() ? query.hit.primID : numbers[query.hit.primID],
+                       query.hit.u,    query.hit.v,
+                       query.ray.tfar, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
         }
     }
 }
