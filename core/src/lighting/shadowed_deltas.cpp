@@ -7,7 +7,6 @@
 #include "base/even_steps.h"
 #include "lighting/shadow_policy.h"
 #include "shlight/sampling.h"
-#include "tracing/own_curve.h"
 
 namespace shlight {
 namespace {
@@ -140,7 +139,6 @@ void ShadowedDeltas::add_sample(const DeltaRange& range, std::size_t light, std:
     } else {
         samples_.push_back({hit, static_cast<std::uint32_t>(rays_.size())});
         rays_.push_back(lights_->ray(i, hits.shadow_start(hit, lights_->way(i, hits.frame[hit].origin))));
-        rays_.back().t_min = begin_beside_curve(hits.terminator[hit], rays_.back().direction);
     }
 }
 

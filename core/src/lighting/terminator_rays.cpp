@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "shlight/sampling.h"
-#include "tracing/own_curve.h"
 
 namespace shlight {
 namespace {
@@ -21,9 +20,6 @@ double random_of(const Vec3f& way) {
 
 void TerminatorRays::lift(const Hits& hits, std::size_t hit, ShadowTarget& target, std::size_t begin, DrawnRays& rays) {
     const Terminator& own = hits.terminator[hit];
-    for (std::size_t ray = begin; ray < rays.size() && own.lift != Vec3d(0); ++ray) {
-        rays.rays[ray].t_min = begin_beside_curve(own, rays.rays[ray].direction);
-    }
     if (!own.lifts() || !target.draws()) {
         return;
     }

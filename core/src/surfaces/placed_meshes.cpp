@@ -90,7 +90,6 @@ Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point
     const TerminatorOffsets& offsets = mesh_of(placements_[hit.instance]).terminator;
     Terminator result;
     result.frequency = 1 / (1 - offsets.shading / 2);
-    result.lift = point.thickness / 2 * point.geometric_normal - point.lift;
     std::optional<std::array<Vec3d, 3>> normals;
     if (!(offsets.geometry > 0) || !(normals = corner_normals(hit))) {
         return result;
@@ -105,9 +104,8 @@ Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point
             own = -own;
         }
     }
-    const Vec3d lift = lift_to_smooth_surface(corners(hit), *normals, weights);
-    if (largest_component(lift) > point.error) {
-        result.lift = lift;
+    result.lift = lift_to_smooth_surface(corners(hit), *normals, weights);
+    if (largest_component(result.lift) > point.error) {
         result.smooth = point.shading_normal;
         result.geometric = point.geometric_normal;
         result.cutoff = offsets.geometry;

@@ -27,6 +27,7 @@ void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, 
                std::uint32_t sample_index, PathKind path_kind, std::uint32_t number_in_apart) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
+    // Shadow rays start on a ribbon, as in Cycles: Embree passes over flat curves within two radii of their origin.
     shadow_origin.push_back(surface.off_surface() - surface.lift);
     terminator.push_back(terminator_there);
     error.push_back(surface.error);

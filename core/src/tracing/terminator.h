@@ -16,7 +16,7 @@ namespace shlight {
 /// Shadow rays of one hit start on its triangle, or, if they are as flat as the light at the shadow's edge, on the
 /// smooth surface that the triangle stands for; and a part of the light is let in.
 struct Terminator {
-    Vec3d lift{0};                  ///< from the triangle to the smooth surface; of a curve or sphere see own_curve.h
+    Vec3d lift{0};                  ///< from the triangle to the smooth surface
     Vec3d smooth{0}, geometric{0};  ///< unit normals of both, on the viewer's side
     double cutoff = 0;              ///< cosine of the light below which rays start on the smooth surface; 0: none does
     double frequency = 1;           ///< light ends at an angle of π / 2 ÷ this to the normal
