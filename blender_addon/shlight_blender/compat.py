@@ -54,11 +54,7 @@ def panorama_settings(lens: Any) -> Any:
 # The Principled BSDF has a specular layer over the diffuse base, or is a plain sum of both.
 PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 # Its inputs that are not supported, with the values at which they do nothing.
-PRINCIPLED_UNSUPPORTED = (
-    {"Anisotropic": 0.0, "Thin Film Thickness": 0.0}
-    if IS_BLENDER_4
-    else {"Subsurface": 0.0, "Anisotropic": 0.0, "Clearcoat": 0.0}
-)
+PRINCIPLED_UNSUPPORTED = {"Thin Film Thickness": 0.0} if IS_BLENDER_4 else {"Subsurface": 0.0, "Clearcoat": 0.0}
 # The definition of a Voronoi Texture, as `nodes.voronoi` numbers them.
 CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5
 # A Magic Texture brings coordinates into one turn after it has scaled them, or before.

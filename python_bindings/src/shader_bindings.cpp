@@ -108,7 +108,11 @@ Array<float> evaluate(const ShaderProgram& program,
 }
 
 /// The microfacets of a kind, as "beckmann_schlick"; those without a Fresnel factor have the distribution's name alone.
+/// "stretched_" before it: those of two widths.
 std::optional<GgxShape> microfacets_of(std::string_view kind, double ior) {
+    constexpr std::string_view kStretched = "stretched_";
+    const double across = kind.starts_with(kStretched) ? 1 : 0;
+    kind.remove_prefix(across != 0 ? kStretched.size() : 0);
     constexpr std::array<std::pair<std::string_view, Microfacets>, 3> kDistributions = {
         {{"ggx", Microfacets::ggx},
          {"beckmann", Microfacets::beckmann},
@@ -123,7 +127,7 @@ std::optional<GgxShape> microfacets_of(std::string_view kind, double ior) {
         if (kind.starts_with(name)) {
             for (const auto& [factor, fresnel] : kFactors) {
                 if (kind.substr(name.size()) == factor) {
-                    return GgxShape{1, fresnel, ior, distribution};
+                    return GgxShape{1, fresnel, ior, distribution, across};
                 }
             }
         }

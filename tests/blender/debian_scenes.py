@@ -114,6 +114,13 @@ def principled(studio):
     shine_on(studio, "ShaderNodeBsdfPrincipled", Base_Color=(0.3, 0.6, 0.8), Specular=0.8)
 
 
+def brushed(studio):
+    """Narrow highlights have much noise in Cycles."""
+    studio.scene.cycles.samples, studio.scene.shlight.noise_threshold = 4096, 2e-3
+    inputs = {"Base_Color": (0.9, 0.6, 0.3), "Metallic": 1.0, "Anisotropic": 0.7, "Anisotropic_Rotation": 0.1}
+    shine_on(studio, "ShaderNodeBsdfPrincipled", **inputs)
+
+
 def satin(studio):
     """Rough, under sheen."""
     inputs = {"Base_Color": (0.8, 0.3, 0.2), "Specular": 0.0, "Sheen": 1.0, "Sheen_Tint": 0.7}
@@ -265,8 +272,8 @@ def displaced(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, satin, velvet, translucent, transmission, curves, noise, sky, dark, panoramic, orthographic,
-    simplified, flat_camera, coarse, displaced,
+    metal, brushed, principled, satin, velvet, translucent, transmission, curves, noise, sky, dark,
+    panoramic, orthographic, simplified, flat_camera, coarse, displaced,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

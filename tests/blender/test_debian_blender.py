@@ -99,6 +99,7 @@ OTHERS = [
     "displaced",
     "glossy",
     "metal",
+    "brushed",
     "principled",
     "satin",
     "velvet",

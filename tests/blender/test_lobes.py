@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metals, sheen and other distributions of microfacets: as bright as in Cycles under each kind of light."""
+"""Metals, sheen, microfacets of other distributions and of two widths: as bright as in Cycles under each light."""
 
 from __future__ import annotations
 
@@ -38,6 +38,20 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     ),
     **{f"beckmann_{r:g}": (GLOSSY, {"Roughness": r, "distribution": "BECKMANN"}) for r in (0.3, 0.5, 1.0)},
     **{f"shirley_{r:g}": (GLOSSY, {"Roughness": r, "distribution": "ASHIKHMIN_SHIRLEY"}) for r in (0.3, 0.5, 1.0)},
+    **{
+        f"brushed_{a:g}_{turns:g}": (
+            PRINCIPLED,
+            {"Base_Color": GOLD, "Metallic": 1.0, "Roughness": 0.4, "Anisotropic": a, "Anisotropic_Rotation": turns},
+        )
+        for a, turns in ((0.5, 0.0), (1.0, 0.0), (1.0, 0.15))
+    },
+    "brushed_dielectric": (PRINCIPLED, {"Roughness": 0.3, "Anisotropic": 0.8, "Coat_Weight": 0.5, "IOR": 2.0}),
+    **{
+        f"glossy_{a:g}_{kind}": (GLOSSY, {"Roughness": 0.5, "Anisotropy": a, "Rotation": 0.1, "distribution": kind})
+        for a, kind in ((0.5, "GGX"), (-0.5, "MULTI_GGX"), (0.9, "GGX"), (0.5, "BECKMANN"), (-0.7, "ASHIKHMIN_SHIRLEY"))
+    },
+    "metal_brushed": (METAL, {"Base_Color": GOLD, "Edge_Tint": (0.9, 0.6, 0.5), "Anisotropy": 0.7, "Rotation": 0.2}),
+    "conductor_brushed": (METAL, {"fresnel_type": "PHYSICAL_CONDUCTOR", "Anisotropy": 1.0, "distribution": "BECKMANN"}),
     "glass_beckmann": ("ShaderNodeBsdfGlass", {"Roughness": 0.5, "distribution": "BECKMANN"}),
     **{f"fibres_{r:g}": (SHEEN, {"Roughness": r, "distribution": "MICROFIBER"}) for r in (0.5, 1.0)},
     **{f"velvet_{r:g}": (SHEEN, {"Roughness": r, "distribution": "ASHIKHMIN"}) for r in (0.3, 0.5, 1.0)},
@@ -86,14 +100,33 @@ def test_as_bright_as_in_cycles(studio: Any, case: str, light: str) -> None:
     shader, inputs = CASES[case]
     if not hasattr(bpy.types, shader):
         pytest.skip(f"this version of Blender has no {shader}")
-    material = studio.material(shader, **inputs)
+    rough = inputs.get("Roughness", 0.5) >= 0.4 and abs(inputs.get("Anisotropy", 0.0)) <= 0.7
+    compare(studio, studio.material(shader, **inputs), light, rough=rough)
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+def test_anisotropy_and_tangents_may_vary(studio: Any, light: str) -> None:
+    """A picture decides how anisotropic and how rough a metal is, and a Tangent node along what."""
+    material = studio.material(PRINCIPLED, Base_Color=GOLD, Metallic=1.0)
+    tree = material.node_tree
+    node = next(each for each in tree.nodes if each.type == "BSDF_PRINCIPLED")
+    noise, tangent = tree.nodes.new("ShaderNodeTexNoise"), tree.nodes.new("ShaderNodeTangent")
+    noise.inputs["Scale"].default_value = 2.0
+    tangent.axis = "X"
+    for name in ("Anisotropic", "Anisotropic Rotation", "Roughness"):
+        tree.links.new(noise.outputs[0], node.inputs[name])
+    tree.links.new(tangent.outputs[0], node.inputs["Tangent"])
+    compare(studio, material, light, rough=False)
+
+
+def compare(studio: Any, material: Any, light: str, *, rough: bool) -> None:
     studio.plane(6.0, material)
     studio.ball(1.0, material, location=(0, 0, 1.1), rings=24)
     light_up(studio, light)
     studio.camera()
     studio.resolution(32, 24)
     # The mean of narrow highlights, which are a few pixels, has noise of 0.4 % at 1024 samples.
-    studio.scene.cycles.samples = 8192 if inputs.get("Roughness", 0.5) < 0.4 else 1024
+    studio.scene.cycles.samples = 1024 if rough else 8192
     studio.scene.shlight.noise_threshold = 2e-3
     assert [line for line in studio.messages(most=99) if "shows nothing behind it" not in line] == []
     studio.compare(mean=5e-3, error=5e-3)

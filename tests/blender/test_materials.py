@@ -235,8 +235,7 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
     [
         ("ShaderNodeBsdfToon", {}, "Toon BSDF is not supported"),
         ("ShaderNodeSubsurfaceScattering", {}, "Subsurface Scattering is not supported"),
-        ("ShaderNodeBsdfAnisotropic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
-        ("ShaderNodeBsdfMetallic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
+        ("ShaderNodeBsdfPrincipled", {"Thin_Film_Thickness": 300.0}, "'Thin Film Thickness' is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
         ("ShaderNodeBsdfPrincipled", {"Subsurface_Weight": 0.5}, "'Subsurface Weight' is not supported"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),

@@ -65,11 +65,8 @@ def test_what_can_change_more_is_named_first(studio: Any, first_is_large: bool) 
     first, second = (large, small) if first_is_large else (small, large)
     studio.box(name="A", is_holdout=True, location=(-1, 0, 0), **first)
     studio.box(name="B", is_shadow_catcher=True, location=(1, 0, 0), **second)
-    for name, size, kind in (("C", first, "Anisotropic"), ("D", second, "Toon")):
-        made = studio.material(f"ShaderNodeBsdf{kind}", name=name)
-        if name == "C":
-            node = next(each for each in made.node_tree.nodes if each.type == "BSDF_GLOSSY")
-            node.inputs["Anisotropy"].default_value = 0.5
+    for name, size, kind in (("C", first, "SubsurfaceScattering"), ("D", second, "BsdfHair")):
+        made = studio.material(f"ShaderNode{kind}", name=name)
         studio.box(material=made, location=(0, 1, 0), **size)
     studio.lamp("SPOT", -1.0 if first_is_large else -100.0, (0, 0, 3))
     studio.area(100.0 if first_is_large else 1.0, scale=(0, 0, 0))

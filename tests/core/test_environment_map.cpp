@@ -243,8 +243,8 @@ TEST(MapLookup, RemainderIsThePictureLessItsExpansionWhereItIsNotBlurred) {
         for (const bool with_spots : {true, false}) {
             // A place in float errs by some roundings of the width, times the largest step between two texels.
             const double tolerance = 48 * 0x1p-22 * (with_spots ? 2000.0 : map.bright.limit);
-            look_up_remainder(map, with_spots, {v[0].data(), v[1].data(), v[2].data()}, none.data(), kLookupLanes,
-                              {v[3].data(), v[4].data(), v[5].data()});
+            look_up_remainder(map, with_spots, false, {v[0].data(), v[1].data(), v[2].data()}, none.data(),
+                              kLookupLanes, {v[3].data(), v[4].data(), v[5].data()});
             for (std::size_t i = 0; i < kLookupLanes; ++i) {
                 const Rgb whole = radiance_from(with_spots ? source : below, directions[i]);
                 const Rgb expected = whole - radiance_from(map.expansion, directions[i]);

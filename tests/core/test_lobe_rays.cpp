@@ -48,6 +48,10 @@ std::vector<LobeShape> shapes() {
             list.emplace_back(GgxShape{alpha, fresnel, 1.45});
         }
     }
+    for (const Microfacets kind : {Microfacets::ggx, Microfacets::beckmann, Microfacets::ashikhmin_shirley}) {
+        list.emplace_back(GgxShape{0.1, Fresnel::one, 1.5, kind, 0.7, 0.9});
+        list.emplace_back(GgxShape{0.01, Fresnel::schlick, 1.5, kind, 0.1, 4.0});
+    }
     static const std::shared_ptr<const LobeTable> table = random_table();
     list.emplace_back(TableShape{table, 2, 0.7});
     return list;

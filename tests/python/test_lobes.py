@@ -119,6 +119,62 @@ def test_microfacets_are_their_formula(distribution: str, factor: str) -> None:
             assert np.abs(found - truth).max() <= 2e-3 * truth + 2e-5, (alpha, sun, angle)
 
 
+TANGENT = np.array([math.cos(0.4), math.sin(0.4), 0.0])
+
+
+def stretched(distribution: str, x: float, y: float, light: Doubles) -> Doubles:
+    """f·cos of microfacets of width x along TANGENT and y across it (Heitz 2014; Ashikhmin & Shirley 2000)."""
+    light = np.where(light[:, 2:] > 0, light, [[0, 0, 1]])
+    across = np.cross([0.0, 0.0, 1.0], TANGENT)
+    half = light + VIEW
+    half /= np.linalg.norm(half, axis=1, keepdims=True)
+    hx, hy, hz = half @ TANGENT, half @ across, half[:, 2]
+    if distribution == "ashikhmin_shirley":
+        nx, ny = 2 / x**2 - 2, 2 / y**2 - 2
+        power = (nx * hx**2 + ny * hy**2) / (1 - hz**2)
+        norm = math.sqrt((nx + 1) * (ny + 1)) / (8 * math.pi)
+        return np.asarray(norm * hz**power / (half @ VIEW * np.maximum(light[:, 2], VIEW[2])) * light[:, 2])
+    slope2 = ((hx / x) ** 2 + (hy / y) ** 2) / hz**2
+    d = (np.exp(-slope2) if distribution == "beckmann" else (1 + slope2) ** -2.0) / (math.pi * x * y * hz**4)
+
+    def hidden(v: Doubles) -> Doubles:
+        slope = np.hypot(x * (v @ TANGENT), y * (v @ across)) / v[..., 2]
+        if distribution == "ggx":
+            return np.asarray((np.sqrt(1 + slope**2) - 1) / 2)
+        a = 1 / np.maximum(slope, 1e-9)
+        return np.where(a < 1.6, (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a), 0.0)
+
+    return np.asarray(d / (1 + hidden(light) + hidden(VIEW)) / (4 * VIEW[2]))
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann", "ashikhmin_shirley"])
+@pytest.mark.parametrize("anisotropy", [0.5, -0.5, 0.8])
+def test_anisotropic_microfacets_are_their_formula(distribution: Any, anisotropy: float) -> None:
+    ratio = 1 - anisotropy if anisotropy > 0 else 1 / (1 + anisotropy)
+    tangent = nodes.Vector(*(2.0 * TANGENT + [0.0, 0.0, 0.3]))
+    quarter_turn = nodes.Vector(*np.cross(TANGENT, [0.0, 0.0, 1.0]))
+    for sun, angle in itertools.product(LIGHTS, (0.0, 0.1, 1.0)):
+        truth = reflected(lambda ways: stretched(distribution, 0.25 * ratio, min(0.25 / ratio, 1), ways), sun, angle)
+        for share, turns, along in (
+            (number(anisotropy), 0.0, tangent),
+            (nodes.uv().x * (2 * anisotropy), nodes.uv().y * 0.5, quarter_turn),
+        ):
+            shader = nodes.glossy(1.0, 0.5, distribution=distribution, anisotropy=share, rotation=turns, tangent=along)
+            assert np.abs(radiance(shader, sun, angle) - truth).max() <= 2e-3 * truth + 2e-5, (sun, angle)
+
+
+def test_anisotropic_lobes_reflect_no_more_than_they_get() -> None:
+    along = nodes.Vector(*TANGENT)
+    for roughness, share in itertools.product((0.3, 0.6, 1.0), (0.5, 1.0)):
+        own = {"anisotropy": share, "tangent": along}
+        for shader in (
+            nodes.glossy(1.0, roughness, **own),
+            nodes.metallic(1.0, 1.0, roughness, **own),
+            nodes.principled(1.0, roughness=roughness, anisotropic=share, tangent=along),
+        ):
+            assert radiance(shader, None).max() <= 1 + 1e-3
+
+
 def sheen_value(roughness: float, light: Doubles) -> Doubles:
     a, b = (float(energy.sheen_transform(name, roughness, VIEW[2:])[0]) for name in ("a", "b"))
     x, y, z = light.T
@@ -179,5 +235,9 @@ def test_metals_reflect_no_more_than_they_get() -> None:
 def test_what_is_refused() -> None:
     with pytest.raises(ValueError, match="distribution must be one of"):
         nodes.glossy(0.5, 0.5, distribution="phong")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="tangent must be given where anisotropy is not 0"):
+        nodes.glossy(0.5, 0.5, anisotropy=0.5)
+    with pytest.raises(ValueError, match="tangent must be given where anisotropic is not 0"):
+        nodes.principled(anisotropic=0.5)
     with pytest.raises(ValueError, match="several_bounces is known for distribution 'ggx' alone"):
         nodes.metallic(0.5, 0.5, 0.5, several_bounces=True, distribution="beckmann")

@@ -21,7 +21,7 @@ void SurfaceReflection::reset(const Bsdf& bsdf, float cos_theta_o, double azimut
     parts_.clear();
     for (const Lobe& lobe : bsdf.lobes()) {
         const Rgb scale = lobe.scale(cos_theta_o);
-        const LobeShape shape = is_anisotropic(lobe.shape) ? with_parameter(lobe.shape, azimuth) : lobe.shape;
+        const LobeShape shape = is_anisotropic(lobe.shape) ? with_azimuth(lobe.shape, azimuth) : lobe.shape;
         const double albedo = std::max(0.0, lobe.fit ? lobe.albedo(cosine) : lobe_albedo(shape, cosine));
         if (is_mirror(lobe.shape)) {
             mirrored_ += scale * static_cast<float>(albedo);

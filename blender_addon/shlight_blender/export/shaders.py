@@ -7,14 +7,14 @@ from typing import TypedDict
 
 from shlight import nodes
 from shlight.nodes import Shader, Vector
-from shlight.nodes.principled import Distribution
+from shlight.nodes.principled import Distribution, aspect_stretch, stretched
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
 from ..compat import PRINCIPLED_IS_LAYERED, PRINCIPLED_UNSUPPORTED
 from ..report import Effect
 from .displacement import DISPLACEMENT_NODES
-from .input_nodes import INPUT_NODES, fresnel_of
+from .input_nodes import INPUT_NODES, around, fresnel_of
 from .nodes import NodeInputs, ReadNode, own_value
 from .noise_nodes import NOISE_NODES
 from .texture_nodes import TEXTURE_NODES
@@ -30,6 +30,7 @@ DISTRIBUTIONS: dict[str, Distribution] = {"BECKMANN": "beckmann", "ASHIKHMIN_SHI
 PRINCIPLED_NUMBERS = (
     "Metallic", "Roughness", "IOR", "Alpha", "Diffuse Roughness", "Specular IOR Level", "Coat Weight",
     "Coat Roughness", "Coat IOR", "Sheen Weight", "Sheen Roughness", "Transmission Weight", "Emission Strength",
+    "Anisotropic", "Anisotropic Rotation",
 )  # fmt: skip
 PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Sheen Tint", "Emission Color")
 
@@ -39,6 +40,10 @@ def read_principled(inputs: NodeInputs) -> Shader:
     for name, neutral in PRINCIPLED_UNSUPPORTED.items():
         inputs.ignore_unless(name, neutral)
     return _read_layered(inputs) if PRINCIPLED_IS_LAYERED else _read_sum(inputs)
+
+
+def _tangent(inputs: NodeInputs) -> Vector:
+    return inputs.vector_or("Tangent", around("Z"))
 
 
 def _read_layered(inputs: NodeInputs) -> Shader:
@@ -52,6 +57,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
         inputs.color("Base Color"),
         coat_normal=inputs.linked_vector("Coat Normal"),
         several_bounces=inputs.node.distribution == "MULTI_GGX",
+        tangent=_tangent(inputs),
         at=inputs.linked_vector("Normal"),
         **{name.lower().replace(" ", "_"): value for name, value in given.items()},
     )
@@ -86,7 +92,10 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     n = nodes.reflecting_normal(nodes.normal() if at is None else at)
     width = roughness * roughness
     if not (specular.constant == 0.0 and metallic.constant == 0.0):
-        surface += Shader((Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n))) * (1.0 - through)
+        share, turns = inputs.number("Anisotropic"), inputs.number("Anisotropic Rotation")
+        stretch = aspect_stretch(roughness, share, turns, _tangent(inputs), n)
+        lobes = (Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n))
+        surface += Shader(stretched(lobes, stretch)) * (1.0 - through)
     if through.constant != 0.0:
         surface += _glass_of_sum(inputs, base, hue=color(base * tint + (1.0 - tint)), roughness=roughness) * through
     return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha
@@ -134,6 +143,14 @@ class _Microfacets(TypedDict):
     at: Vector | None
 
 
+class _Anisotropy(TypedDict, total=False):
+    """Arguments of `shlight.nodes` by which microfacets have two widths."""
+
+    anisotropy: Value
+    rotation: Value
+    tangent: Vector
+
+
 def _microfacets(inputs: NodeInputs) -> _Microfacets:
     own = inputs.node.distribution
     distribution: Distribution = DISTRIBUTIONS.get(own, "ggx")
@@ -144,22 +161,28 @@ def _microfacets(inputs: NodeInputs) -> _Microfacets:
     }
 
 
+def _anisotropy(inputs: NodeInputs) -> _Anisotropy:
+    """None of Blender 3.4's Glossy BSDF, which has no such inputs."""
+    if "Anisotropy" not in inputs.node.inputs:
+        return {}
+    share, turns = inputs.number("Anisotropy"), inputs.number("Rotation")
+    return {"anisotropy": share, "rotation": turns, "tangent": _tangent(inputs)}
+
+
 def _roughness(inputs: NodeInputs) -> Value:
     """The roughness of a node with a distribution of microfacets."""
     return number(0.0) if inputs.node.distribution == "SHARP" else inputs.number("Roughness")
 
 
 def _glossy(inputs: NodeInputs) -> Shader:
-    inputs.ignore_unless("Anisotropy", 0.0)
-    return nodes.glossy(inputs.color("Color"), _roughness(inputs), **_microfacets(inputs))
+    return nodes.glossy(inputs.color("Color"), _roughness(inputs), **_microfacets(inputs), **_anisotropy(inputs))
 
 
 def _metallic(inputs: NodeInputs) -> Shader:
-    inputs.ignore_unless("Anisotropy", 0.0)
-    roughness, rest = inputs.number("Roughness"), _microfacets(inputs)
+    roughness, rest, stretch = inputs.number("Roughness"), _microfacets(inputs), _anisotropy(inputs)
     if inputs.node.fresnel_type == "F82":
-        return nodes.metallic(inputs.color("Base Color"), inputs.color("Edge Tint"), roughness, **rest)
-    return nodes.conductor(inputs.color("IOR"), inputs.color("Extinction"), roughness, **rest)
+        return nodes.metallic(inputs.color("Base Color"), inputs.color("Edge Tint"), roughness, **rest, **stretch)
+    return nodes.conductor(inputs.color("IOR"), inputs.color("Extinction"), roughness, **rest, **stretch)
 
 
 def _glass(inputs: NodeInputs) -> Shader:
@@ -189,6 +212,7 @@ def _mix(inputs: NodeInputs) -> Shader:
 
 
 SHADERS: dict[str, ReadNode] = {
+    "BSDF_ANISOTROPIC": _glossy,
     "BSDF_DIFFUSE": _diffuse,
     "BSDF_GLASS": _glass,
     "BSDF_GLOSSY": _glossy,

@@ -36,7 +36,7 @@ struct Lobe {
     std::uint32_t varying_width = 0;
     int only_order = 0;  ///< of the fit; 0: several
 
-    /// Whether lobe_parameter() of its shape is another at each hit.
+    /// Whether the form of its shape is another at each hit.
     bool varies() const { return varying_width != 0 || is_anisotropic(shape); }
     Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }
     /// ∫ shape dω; of an anisotropic shape at its own azimuth.

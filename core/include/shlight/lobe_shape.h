@@ -85,11 +85,15 @@ enum class Microfacets {
 
 /// Microfacets, f·cos = F D G₂ / (4 cosθ_o).
 /// A colour f0 needs two shapes: f0 · {one} + (1 - f0) · ({schlick or dielectric}) · …, see Bsdf::ggx.
+/// Where `across` is not 0 the slopes of microfacets spread differently along two axes: the distribution is round in
+/// (h_x/α_x, h_y/α_y, h_z) (Heitz 2014), and exponents of Ashikhmin & Shirley are interpolated as in their paper.
 struct GgxShape {
     double alpha;                    ///< roughness² in Blender's terms, 0 … 1; 0 is a perfect mirror
     Fresnel fresnel = Fresnel::one;  ///< the factor included in f·cos
     double ior = 1.5;                ///< used by Fresnel::dielectric only
     Microfacets distribution = Microfacets::ggx;
+    double across = 0;   ///< α at right angles to the axis that `alpha` is of, which is the smaller one; 0: the same
+    double azimuth = 0;  ///< 0 … 2π: of ω_o about the normal, from that axis on
 
     bool is_glossy() const { return true; }
     double width() const { return alpha; }
@@ -101,7 +105,7 @@ struct GgxShape {
     Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
     double density(const Vec3d& wo, const Vec3d& wi) const;
     double largest_density(const Vec3d& wo) const;
-    GgxShape sampled() const { return {alpha}; }
+    GgxShape sampled() const { return {alpha, Fresnel::one, 1.5, Microfacets::ggx, across, azimuth}; }
 
     // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
     auto operator<=>(const GgxShape&) const = default;
@@ -136,10 +140,20 @@ struct TableShape {
 double lobe_width(const LobeShape& shape);
 /// Whether f·cos depends on the azimuth of ω_o from the surface's tangent on.
 bool is_anisotropic(const LobeShape& shape);
-/// The azimuth of an anisotropic shape, or the width of another, which may differ from hit to hit.
+/// Whether it is one of microfacets with two widths.
+bool is_stretched(const LobeShape& shape);
+/// Lanes take this number of each view: the azimuth of an anisotropic table, or the width of another shape.
 double lobe_parameter(const LobeShape& shape);
-/// The shape with another parameter; unchanged if it has only one.
-LobeShape with_parameter(const LobeShape& shape, double parameter);
+
+/// These numbers may differ from hit to hit: members of GgxShape, or the azimuth of an anisotropic table.
+struct LobeForm {
+    float width = 1, across = 0, azimuth = 0;
+};
+LobeForm lobe_form(const LobeShape& shape);
+/// The shape with another form; what a shape does not have is left out.
+LobeShape with_form(const LobeShape& shape, const LobeForm& form);
+/// The shape at another azimuth, if it has one.
+LobeShape with_azimuth(const LobeShape& shape, double azimuth);
 /// The shape with another width; unchanged if it has only one.
 LobeShape with_width(const LobeShape& shape, double width);
 /// Whether the shape has a peak: it is then shaded in a boosted frame, and lights may exclude it ("visible to glossy

@@ -17,8 +17,10 @@ namespace shlight {
 /// A lobe whose numbers are results of the program, given by index; colours and vectors by the first of three.
 struct ShadedLobe {
     LobeShape shape;
-    std::uint32_t weight;                 ///< colour; NaN and infinity count as 0
-    std::optional<std::uint32_t> alpha;   ///< replaces GgxShape::alpha; clamped to 0 … 1
+    std::uint32_t weight;  ///< colour; NaN and infinity count as 0
+    /// Replaces GgxShape::alpha; clamped to 0 … 1. Of a stretched shape (is_stretched()) it is that along a tangent,
+    /// and four results follow: alpha across the tangent, and the tangent, a world vector of any length.
+    std::optional<std::uint32_t> alpha;
     std::optional<std::uint32_t> normal;  ///< world vector of any length; none or 0: the interpolated normal
     bool several_bounces = false;         ///< the weight compensates the energy lost between microfacets
     bool translucent = false;             ///< it reflects light from the other side than the viewer's, and is diffuse

@@ -185,7 +185,7 @@ HWY_INLINE Color remainder_at(const EnvironmentMap& map, bool with_spots, const 
     return {hn::Sub(whole[0], expansion[0]), hn::Sub(whole[1], expansion[1]), hn::Sub(whole[2], expansion[2])};
 }
 
-void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+void look_up_remainder(const EnvironmentMap& map, bool with_spots, bool with_expansion, const MapDirections& directions,
                        const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
     const Floats d;
     const RadiancePyramid& pyramid = with_spots ? map.whole_remainder : map.remainder;
@@ -209,7 +209,13 @@ void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDire
                 fine[channel] = hn::IfThenElse(is_finest, finest[channel], fine[channel]);
             }
         }
-        const Color blurred = mixed(fine, coarse, hn::Sub(level, finer));
+        Color blurred = mixed(fine, coarse, hn::Sub(level, finer));
+        if (with_expansion) {
+            const Color expansion = on_picture(map.expansion, place).mean(map.expansion.pixels.data());
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                blurred[channel] = hn::Add(blurred[channel], expansion[channel]);
+            }
+        }
         for (std::size_t channel = 0; channel < 3; ++channel) {
             hn::StoreU(blurred[channel], d, radiance[channel] + i);
         }
@@ -230,9 +236,9 @@ void look_up(const EnvironmentMap& map, const MapDirections& directions, std::si
     HWY_DYNAMIC_DISPATCH(look_up)(map, directions, count, values);
 }
 
-void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+void look_up_remainder(const EnvironmentMap& map, bool with_spots, bool with_expansion, const MapDirections& directions,
                        const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
-    HWY_DYNAMIC_DISPATCH(look_up_remainder)(map, with_spots, directions, solid_angles, count, radiance);
+    HWY_DYNAMIC_DISPATCH(look_up_remainder)(map, with_spots, with_expansion, directions, solid_angles, count, radiance);
 }
 
 }  // namespace shlight

@@ -17,26 +17,30 @@
 namespace shlight {
 namespace {
 
-/// Directions that a narrow lobe is summed over; along each side of the unit square.
-constexpr std::size_t kDirectionsAcross = 16;
-constexpr std::size_t kDirections = kDirectionsAcross * kDirectionsAcross;
-static_assert(kDirections % kLobeRayLanes == 0 && kDirections % kLookupLanes == 0);
+/// Directions that a lobe is summed over, along each side of the unit square: a narrow one beside its harmonics, and a
+/// stretched one without any.
+constexpr std::size_t kDirectionsAcross = 16, kStretchedAcross = 32;
 
 /// Points of the unit square that these are made of.
+template <std::size_t kAcross>
 struct DirectionPoints {
+    static constexpr std::size_t kCount = kAcross * kAcross;
+    static_assert(kCount % kLobeRayLanes == 0 && kCount % kLookupLanes == 0);
+
     DirectionPoints() {
-        for (std::size_t i = 0; i < kDirections; ++i) {
-            const std::size_t row = i / kDirectionsAcross;
-            u[i] = (static_cast<float>(i % kDirectionsAcross) + 0.5F) / kDirectionsAcross;
-            v[i] = (static_cast<float>(row) + 0.5F) / kDirectionsAcross;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            const std::size_t row = i / kAcross;
+            u[i] = (static_cast<float>(i % kAcross) + 0.5F) / kAcross;
+            v[i] = (static_cast<float>(row) + 0.5F) / kAcross;
         }
     }
-    std::array<float, kDirections> u, v;
+    std::array<float, kCount> u, v;
 };
 
 /// What is known of them; elements are written before they are read.
+template <std::size_t kAcross>
 struct DirectionArrays {
-    std::array<std::array<float, kDirections>, 8> values;
+    std::array<std::array<float, kAcross * kAcross>, 8> values;
 };
 
 /// Relative to the lobe's albedo and the picture's mean: harmonics that err by more are not left alone.
@@ -64,9 +68,9 @@ std::array<double, kMaxOrder> relative_errors(const float* lobe, double lobe_tai
     return errors;
 }
 
-double albedo_of(const MaterialLobes& material, std::size_t lobe, float width, double cos_theta_o) {
+double albedo_of(const MaterialLobes& material, std::size_t lobe, const LobeForm& form, double cos_theta_o) {
     const Lobe& own = material.lobes()[lobe];
-    return own.varies() ? lobe_albedo(material.shape(lobe, width), cos_theta_o) : own.albedo(cos_theta_o);
+    return own.varies() ? lobe_albedo(material.shape(lobe, form), cos_theta_o) : own.albedo(cos_theta_o);
 }
 
 /// Step of the logarithm of a varying width; between steps reflected light is interpolated linearly.
@@ -90,7 +94,7 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
         auto& plans = plans_.emplace_back();
         auto& width_plans = width_plans_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            const bool varies = lobe.varying_width != 0;
+            const bool varies = lobe.varying_width != 0 && !is_stretched(lobe.shape);
             plans.push_back(varies ? Plan() : plan(lobe.shape));
             width_plans.push_back(varies ? std::make_unique<const ValuesByNumber<Plan>>(kWidthSteps) : nullptr);
         }
@@ -116,13 +120,13 @@ bool EnvironmentShading::sees_texels(const LobeShape& shape) const {
     return order_ == 0 && is_glossy(shape) && lobe_width(shape) < kLeastWidth * environment_->map()->texel();
 }
 
-bool EnvironmentShading::splits(std::size_t material, std::size_t lobe, float width) const {
-    const LobeShape shape = materials_[material].shape(lobe, width);
+bool EnvironmentShading::splits(std::size_t material, std::size_t lobe, const LobeForm& form) const {
+    const LobeShape shape = materials_[material].shape(lobe, form);
     return environment_->map() != nullptr && !is_mirror(shape) && !sees_texels(shape);
 }
 
 EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const {
-    if (is_mirror(shape)) {
+    if (is_mirror(shape) || is_stretched(shape)) {
         return {};
     }
     const EnvironmentMap& map = *environment_->map();
@@ -150,12 +154,12 @@ EnvironmentShading::Choice EnvironmentShading::either(const Choice& a, const Cho
     return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};
 }
 
-EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, double cos_theta_o, double parameter) {
-    return either(choose(*mix.plans[0], cos_theta_o, parameter), choose(*mix.plans[1], cos_theta_o, parameter));
+EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, double cos_theta_o, double azimuth) {
+    return either(choose(*mix.plans[0], cos_theta_o, azimuth), choose(*mix.plans[1], cos_theta_o, azimuth));
 }
 
-EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o, double parameter) {
-    const RowTaps nodes = plan.lobe->nodes(cos_theta_o, parameter);
+EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o, double azimuth) {
+    const RowTaps nodes = plan.lobe->nodes(cos_theta_o, azimuth);
     Choice choice = plan.choices[nodes.rows[0]];
     for (std::size_t i = 1; i < nodes.count; ++i) {
         choice = either(choice, plan.choices[nodes.rows[i]]);
@@ -174,10 +178,13 @@ class EnvironmentShading::Point {
     const glm::dmat3& to_map() const { return to_map_; }
     const Vec3d& view() const { return view_; }
 
-    /// The mean of what the directions show of the remainder, weighed with f·cos over their density.
-    Rgb by_directions(const LobeShape& shape, bool with_spots) const {
-        static const DirectionPoints points;
-        DirectionArrays lanes;
+    /// The mean of what the directions show of the remainder, or of the whole picture, weighed with f·cos over their
+    /// density.
+    template <std::size_t kAcross>
+    Rgb by_directions(const LobeShape& shape, bool with_spots, bool whole) const {
+        static const DirectionPoints<kAcross> points;
+        constexpr std::size_t kDirections = DirectionPoints<kAcross>::kCount;
+        DirectionArrays<kAcross> lanes;
         auto& [x, y, z, value, density, red, green, blue] = lanes.values;
         sample_lobe_rays(shape, view_, points.u.data(), points.v.data(), kDirections, {x.data(), y.data(), z.data()});
         const ShadingFrame own = {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -192,7 +199,7 @@ class EnvironmentShading::Point {
             value[i] = above ? value[i] / density[i] : 0.0F;
             density[i] = 1 / ((above ? density[i] : 1.0F) * kDirections);  // the solid angle
         }
-        look_up_remainder(*map_, with_spots, {x.data(), y.data(), z.data()}, density.data(), kDirections,
+        look_up_remainder(*map_, with_spots, whole, {x.data(), y.data(), z.data()}, density.data(), kDirections,
                           {red.data(), green.data(), blue.data()});
         Rgb sum(0);
         float weights = 0;
@@ -217,14 +224,14 @@ class EnvironmentShading::Harmonics {
   public:
     explicit Harmonics(const ColorHarmonics& light) : light_(&light) {}
 
-    /// Adds share times what a lobe with this lobe_parameter() reflects to value. All stay where they are until
+    /// Adds share times what a lobe reflects to value. azimuth: see TableShape. All stay where they are until
     /// `finish`. to_light: from the frame of the view.
-    void add(const ShProjection& lobe, float cos_theta_o, float parameter, const glm::dmat3& to_light, int order,
+    void add(const ShProjection& lobe, float cos_theta_o, float own_azimuth, const glm::dmat3& to_light, int order,
              float share, Rgb& value) {
-        const double azimuth = lobe.azimuth_of_view(parameter);
+        const double azimuth = lobe.azimuth_of_view(own_azimuth);
         const glm::dmat3 turn = glm::dmat3({std::cos(azimuth), -std::sin(azimuth), 0},
                                            {std::sin(azimuth), std::cos(azimuth), 0}, {0, 0, 1});
-        const Wanted wanted = {&lobe, cos_theta_o, parameter, false, to_light * turn, order, share, &value};
+        const Wanted wanted = {&lobe, cos_theta_o, own_azimuth, false, to_light * turn, order, share, &value};
         (lobe.is_zonal() ? zonal_ : turned_).push_back(wanted);
         if (lobe.has_sines()) {
             turned_.push_back(wanted);
@@ -248,7 +255,7 @@ class EnvironmentShading::Harmonics {
   private:
     struct Wanted {
         const ShProjection* lobe;
-        float cos_theta_o, parameter;
+        float cos_theta_o, azimuth;
         bool sines;
         glm::dmat3 to_light;
         int order;
@@ -260,7 +267,7 @@ class EnvironmentShading::Harmonics {
     void add_zonal(std::span<const Wanted> some) {
         const int order = some[0].order;
         std::array<float, kCosineMax> terms;
-        some[0].lobe->coefficients(some[0].cos_theta_o, some[0].parameter, false, order, terms.data());
+        some[0].lobe->coefficients(some[0].cos_theta_o, some[0].azimuth, false, order, terms.data());
         ColorHarmonics reflected = *light_;
         for (int l = 0; l < order; ++l) {
             const float factor =
@@ -298,7 +305,7 @@ class EnvironmentShading::Harmonics {
                 const Wanted& own = some[std::min(i, some.size() - 1)];
                 TurnedLobe& lobe =
                     lobes_.emplace_back(TurnedLobe{{}, BandRotation(own.to_light), own.sines ? 1.0F : 0.0F});
-                own.lobe->coefficients(own.cos_theta_o, own.parameter, own.sines, own.order, lobe.terms.data());
+                own.lobe->coefficients(own.cos_theta_o, own.azimuth, own.sines, own.order, lobe.terms.data());
             }
             std::array<Rgb, kTurnedLanes> reflected;
             reflect_turned(lobes_, some.back().order, *light_, reflected);
@@ -331,11 +338,12 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<R
     for (std::size_t point = 0; point < points.size(); ++point) {
         const MaterialLobes& material = materials_[points.material[point]];
         for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-            if (is_mirror(material.shape(lobe, points.parameters(point)[lobe]))) {
+            const LobeForm& form = points.forms(point)[lobe];
+            if (is_mirror(material.shape(lobe, form))) {
                 continue;
             }
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
-            const double albedo = albedo_of(material, lobe, points.parameters(point)[lobe], points.cos_theta_o[point]);
+            const double albedo = albedo_of(material, lobe, form, points.cos_theta_o[point]);
             smooth[lobe * points.size() + point] =
                 static_cast<float>(albedo) * environment_->radiance(points.frame[point].z);
             report.order_counts[1] += points.hit_count(point);
@@ -349,7 +357,7 @@ void EnvironmentShading::for_each_lobe(const ShadingPoints& points, const Functi
         const Point point(*environment_->map(), points.frame[i], points.cos_theta_o[i]);
         const MaterialLobes& material = materials_[points.material[i]];
         for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-            const LobeShape shape = material.shape(lobe, points.parameters(i)[lobe]);
+            const LobeShape shape = material.shape(lobe, points.forms(i)[lobe]);
             if (!is_mirror(shape)) {
                 function(i, lobe, shape, point, lobe * points.size() + i);
             }
@@ -359,31 +367,42 @@ void EnvironmentShading::for_each_lobe(const ShadingPoints& points, const Functi
 
 void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const {
     Harmonics harmonics(environment_->map()->coefficients.channels);
-    for_each_lobe(points, [&](std::size_t i, std::size_t lobe, const LobeShape&, const Point& point, std::size_t at) {
-        const float cosine = points.cos_theta_o[i];
-        const float parameter = points.parameters(i)[lobe];
-        const PlanMix mix = plans(points.material[i], lobe, parameter);
-        const int order = choose(mix, cosine, parameter).order;
-        Rgb& smooth = parts.smooth[at];
-        harmonics.add(*mix.plans[0]->lobe, cosine, parameter, point.to_map(), order, 1 - mix.share, smooth);
-        if (mix.share > 0) {
-            harmonics.add(*mix.plans[1]->lobe, cosine, parameter, point.to_map(), order, mix.share, smooth);
-        }
-    });
+    for_each_lobe(
+        points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
+            if (is_stretched(shape)) {
+                return;
+            }
+            const float cosine = points.cos_theta_o[i];
+            const LobeForm& form = points.forms(i)[lobe];
+            const PlanMix mix = plans(points.material[i], lobe, form.width);
+            const int order = choose(mix, cosine, form.azimuth).order;
+            Rgb& smooth = parts.smooth[at];
+            harmonics.add(*mix.plans[0]->lobe, cosine, form.azimuth, point.to_map(), order, 1 - mix.share, smooth);
+            if (mix.share > 0) {
+                harmonics.add(*mix.plans[1]->lobe, cosine, form.azimuth, point.to_map(), order, mix.share, smooth);
+            }
+        });
     harmonics.finish();
     for_each_lobe(
         points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
             const std::uint32_t material = points.material[i];
-            const float parameter = points.parameters(i)[lobe];
+            const LobeForm& form = points.forms(i)[lobe];
             const double cosine = points.cos_theta_o[i];
-            const Choice choice = choose(plans(material, lobe, parameter), cosine, parameter);
+            const bool whole = is_stretched(shape);
+            if (whole && points.weight(i, lobe) == Rgb(0)) {
+                return;
+            }
+            const Choice choice =
+                whole ? Choice{0, true, true} : choose(plans(material, lobe, form.width), cosine, form.azimuth);
             if (!sees_texels(shape)) {
                 parts.spots[at] = spots_->reflected(shape, point.to_map(), point.view());
             }
             Rgb& smooth = parts.smooth[at];
             if (choice.directions) {
-                smooth += static_cast<float>(albedo_of(materials_[material], lobe, parameter, cosine)) *
-                          point.by_directions(shape, sees_texels(shape));
+                const bool with_spots = sees_texels(shape);
+                smooth += static_cast<float>(albedo_of(materials_[material], lobe, form, cosine)) *
+                          (whole ? point.by_directions<kStretchedAcross>(shape, with_spots, true)
+                                 : point.by_directions<kDirectionsAcross>(shape, with_spots, false));
             }
             smooth = glm::max(smooth, Rgb(0));
             (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=

@@ -39,8 +39,8 @@ class EnvironmentShading {
 
     /// Mirrors are left out. Adds to the report what the points' hits take.
     void shade(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const;
-    /// Whether spots are a part of their own for a lobe of this width.
-    bool splits(std::size_t material, std::size_t lobe, float width) const;
+    /// Whether spots are a part of their own for a lobe of this form.
+    bool splits(std::size_t material, std::size_t lobe, const LobeForm& form) const;
 
   private:
     struct Choice {
@@ -50,7 +50,7 @@ class EnvironmentShading {
     };
     /// How a lobe is shaded under a picture.
     struct Plan {
-        std::shared_ptr<const ShProjection> lobe;  // null: a mirror
+        std::shared_ptr<const ShProjection> lobe;  // null: a mirror, or stretched
         std::vector<Choice> choices;               // of each tabulated view
     };
     /// A lobe's plan, or the plans between which its width lies.
@@ -70,8 +70,8 @@ class EnvironmentShading {
     /// function(point, lobe, its shape, Point, index in UnshadowedParts)
     template <class Function>
     void for_each_lobe(const ShadingPoints& points, const Function& function) const;
-    static Choice choose(const Plan& plan, double cos_theta_o, double parameter);
-    static Choice choose(const PlanMix& mix, double cos_theta_o, double parameter);
+    static Choice choose(const Plan& plan, double cos_theta_o, double azimuth);
+    static Choice choose(const PlanMix& mix, double cos_theta_o, double azimuth);
     /// Returns what serves both.
     static Choice either(const Choice& a, const Choice& b);
 

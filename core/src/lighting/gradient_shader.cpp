@@ -34,7 +34,7 @@ class View {
         for (const Lobe& lobe : bsdf.lobes()) {
             const Rgb weight = lobe.scale(static_cast<float>(cosine_));
             if (weight != Rgb(0) && !is_mirror(lobe.shape)) {
-                lobes_.push_back({is_anisotropic(lobe.shape) ? with_parameter(lobe.shape, azimuth_) : lobe.shape,
+                lobes_.push_back({is_anisotropic(lobe.shape) ? with_azimuth(lobe.shape, azimuth_) : lobe.shape,
                                   {weight.x, weight.y, weight.z}});
             }
         }

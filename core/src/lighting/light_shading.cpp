@@ -123,7 +123,7 @@ class LightShaderWork {
             azimuths_.resize(cosines_.size());
             lights_.resize(cosines_.size());
         }
-        views_.assign(material_, cosines_, weights(own.colors), parameters(own.alphas), false);
+        views_.assign(material_, cosines_, weights(own.colors), forms(own.alphas), false);
     }
 
     /// Whether a light's lobes differ from those of the one before.
@@ -150,17 +150,18 @@ class LightShaderWork {
         return {weights_, material_.lobes().size()};
     }
 
-    /// The azimuth or the width of each view, for each lobe.
-    LobeParameters parameters(std::span<const float> alphas) {
-        parameters_.clear();
+    /// Returns the form of each lobe at each view.
+    LobeForms forms(std::span<const float> alphas) {
+        forms_.clear();
         const std::span<const Lobe> lobes = material_.lobes();
         for (std::size_t view = 0; view < lights_.size() && material_.varies(); ++view) {
             for (std::size_t i = 0; i < lobes.size(); ++i) {
-                parameters_.push_back(lobes[i].varying_width != 0 ? alphas[lights_[view] * lobes.size() + i]
-                                                                  : static_cast<float>(azimuths_[view]));
+                LobeForm& form = forms_.emplace_back(lobe_form(lobes[i].shape));
+                form.width = lobes[i].varying_width != 0 ? alphas[lights_[view] * lobes.size() + i] : form.width;
+                form.azimuth = static_cast<float>(azimuths_[view]);
             }
         }
-        return {parameters_, lobes.size()};
+        return {forms_, lobes.size()};
     }
 
     /// Shades the lights in seen_.
@@ -206,7 +207,7 @@ class LightShaderWork {
     LobeIntegrator batch_;
     std::vector<double> cosines_, azimuths_;
     std::vector<std::size_t> lights_;  // one that each view belongs to
-    std::vector<float> parameters_;
+    std::vector<LobeForm> forms_;
     std::vector<Rgb> weights_;  // of the lobes at each view, or at all
     std::vector<std::uint32_t> view_of_;
     LocalLights seen_;

@@ -309,7 +309,7 @@ void LobeIntegrator::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons,
 
 template <class Lights>
 void LobeIntegrator::by_largest_order(LobeViews& lobe, const Lights& lights) {
-    if (!(lobe.relative_tolerance() > 0)) {
+    if (!(lobe.relative_tolerance() > 0) || lobe.is_stretched()) {
         return;
     }
     const int order = lobe.largest_order();
@@ -322,9 +322,22 @@ void LobeIntegrator::by_largest_order(LobeViews& lobe, const Lights& lights) {
     }
 }
 
+template <class Function>
+void LobeIntegrator::for_each_shape(const LobeViews& lobe, const Function& function) const {
+    if (!lobe.is_stretched()) {
+        function(lobe.shape(), 0, items_.size());
+        return;
+    }
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        function(lobe.shape(item_views_[k]), k, 1);
+    }
+}
+
 void LobeIntegrator::by_rule(const LobeViews& lobe, const CapArrays& circles, int rule) {
-    integrate_caps(lobe.shape(), lobe.parameters(), circles, items_, lobe.positions().directions(), item_views_, rule,
-                   item_values_);
+    for_each_shape(lobe, [&](const LobeShape& shape, std::size_t first, std::size_t count) {
+        integrate_caps(shape, lobe.parameters(), circles, items_.subspan(first, count), lobe.positions().directions(),
+                       item_views_.subspan(first, count), rule, item_values_.subspan(first, count));
+    });
     const int points = cap_rule_points(rule);
     for (const std::uint32_t light : items_) {
         efforts_[light] = points;
@@ -332,8 +345,11 @@ void LobeIntegrator::by_rule(const LobeViews& lobe, const CapArrays& circles, in
 }
 
 void LobeIntegrator::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
-    integrate_polygons(lobe.shape(), lobe.parameters(), polygons.vertices(), polygons.vertex_count(), items_,
-                       lobe.positions().directions(), item_views_, rule, item_values_);
+    for_each_shape(lobe, [&](const LobeShape& shape, std::size_t first, std::size_t count) {
+        integrate_polygons(shape, lobe.parameters(), polygons.vertices(), polygons.vertex_count(),
+                           items_.subspan(first, count), lobe.positions().directions(),
+                           item_views_.subspan(first, count), rule, item_values_.subspan(first, count));
+    });
     const int points = polygon_rule_points(rule, polygons.vertex_count());
     for (const std::uint32_t light : items_) {
         efforts_[light] = points;

@@ -85,6 +85,9 @@ class LobeIntegrator {
     /// Anisotropic lobes: by order² coefficients of each item's light, in `rows`.
     void contract(LobeViews& lobe, int order, std::span<const float> rows);
     std::span<float> rows_of(int order);
+    /// function(shape, first, count) for items that share a shape, whose lanes differ in their parameters alone.
+    template <class Function>
+    void for_each_shape(const LobeViews& lobe, const Function& function) const;
     void by_rule(const LobeViews& lobe, const CapArrays& circles, int rule);
     void by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule);
     /// Outlines cost most: lights that are bright enough are left to harmonics of the largest order.

@@ -19,10 +19,12 @@ Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
     return std::sqrt(1 - cosine * cosine) * hits.frame[hit].x + cosine * hits.frame[hit].z;
 }
 
-double relative_difference(std::span<const float> a, std::span<const float> b) {
+/// Compares widths; forms of another shape or azimuth differ by 1.
+double relative_difference(std::span<const LobeForm> a, std::span<const LobeForm> b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        largest = std::max(largest, std::abs(double{a[i]} - b[i]) / std::max(a[i], b[i]));
+        largest = std::max(largest, std::abs(double{a[i].width} - b[i].width) / std::max(a[i].width, b[i].width));
+        largest = a[i].across == b[i].across && a[i].azimuth == b[i].azimuth ? largest : 1.0;
     }
     return largest;
 }
@@ -44,7 +46,7 @@ void ShadingPoints::clear() {
     material.clear();
     path.clear();
     lobe_weight.clear();
-    lobe_parameters.clear();
+    lobe_forms.clear();
     of_hit.clear();
     pixel_begin.assign(1, 0);
     members_.clear();
@@ -91,8 +93,7 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point, 
     const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
                               glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
                               glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
-    return difference + members.narrowest * relative_difference(hits.parameters(hit), members.first_parameters) <=
-           members.spread;
+    return difference + members.narrowest * relative_difference(hits.forms(hit), members.first_forms) <= members.spread;
 }
 
 void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double tolerance) {
@@ -102,8 +103,8 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     material.push_back(hits.material[hit]);
     path.push_back(hits.path[hit]);
     lobe_weight.resize(lobe_weight.size() + lobe_stride_, Rgb(0));
-    lobe_parameters.resize(lobe_parameters.size() + lobe_stride_, 0);
-    const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.parameters(hit));
+    lobe_forms.resize(lobe_forms.size() + lobe_stride_, {0, 0, 0});
+    const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.forms(hit));
     // The mean of azimuths says nothing about that of lobes: a frame turns fast where it is seen along its normal.
     const double spread = lobes.is_anisotropic() ? 0 : std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
     const Vec3f normal(hits.frame[hit].z);
@@ -111,8 +112,8 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     first_y_.push_back(normal.y);
     first_z_.push_back(normal.z);
     nearness_.push_back(static_cast<float>((spread + kNormalRounding) * (spread + kNormalRounding)));
-    members_.push_back({towards_viewer(hits, hit), hits.parameters(hit), narrowest, spread, 0, false, Vec3d(0),
-                        Vec3d(0), Vec3d(0), 0});
+    members_.push_back(
+        {towards_viewer(hits, hit), hits.forms(hit), narrowest, spread, 0, false, Vec3d(0), Vec3d(0), Vec3d(0), 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -122,7 +123,9 @@ void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t po
     members.towards_viewer += towards_viewer(hits, hit);
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
         lobe_weight[point * lobe_stride_ + lobe] += hits.weight(hit, lobe);
-        lobe_parameters[point * lobe_stride_ + lobe] += hits.parameters(hit)[lobe];
+        LobeForm& form = lobe_forms[point * lobe_stride_ + lobe];
+        const LobeForm& own = hits.forms(hit)[lobe];
+        form = {form.width + own.width, own.across, own.azimuth};
     }
     ++members.count;
     of_hit.push_back(static_cast<std::uint32_t>(point));
@@ -137,7 +140,7 @@ void ShadingPoints::finish(std::size_t point) {
         cos_theta_o[point] = view_cosine(frame[point].z, viewer);
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             lobe_weight[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
-            lobe_parameters[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
+            lobe_forms[point * lobe_stride_ + lobe].width /= static_cast<float>(members.count);
         }
     }
 }

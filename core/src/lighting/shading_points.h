@@ -33,8 +33,8 @@ class ShadingPoints {
     std::span<const Rgb> weights(std::size_t point) const {
         return std::span(lobe_weight).subspan(point * lobe_stride_, lobe_stride_);
     }
-    std::span<const float> parameters(std::size_t point) const {
-        return std::span(lobe_parameters).subspan(point * lobe_stride_, lobe_stride_);
+    std::span<const LobeForm> forms(std::size_t point) const {
+        return std::span(lobe_forms).subspan(point * lobe_stride_, lobe_stride_);
     }
     std::span<const std::size_t> hits_of(std::size_t point) const {
         return std::span(hits_by_point_).subspan(first_hit_[point], hit_count(point));
@@ -45,16 +45,16 @@ class ShadingPoints {
     std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
     std::vector<PathKind> path;
-    std::vector<Rgb> lobe_weight;        ///< the mean over the point's hits of Hits::lobe_weight, lobe_stride × points
-    std::vector<float> lobe_parameters;  ///< likewise of Hits::lobe_parameters
-    std::vector<std::uint32_t> of_hit;   ///< the point of each hit
+    std::vector<Rgb> lobe_weight;       ///< the mean over the point's hits of Hits::lobe_weight, lobe_stride × points
+    std::vector<LobeForm> lobe_forms;   ///< likewise of Hits::lobe_forms
+    std::vector<std::uint32_t> of_hit;  ///< the point of each hit
     std::vector<std::size_t> pixel_begin;  ///< pixel p has the points pixel_begin[p] … pixel_begin[p + 1] - 1
 
   private:
     /// The hits of a point: what the first one demands of the others, and their sum.
     struct Members {
         Vec3d first_towards_viewer;
-        std::span<const float> first_parameters;
+        std::span<const LobeForm> first_forms;
         double narrowest;      // least distance over which f·cos changes
         double spread;         // allowed difference from the first
         double nearest_light;  // distance, found when a second hit asks for it

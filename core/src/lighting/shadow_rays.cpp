@@ -72,7 +72,7 @@ bool ShadowRays::shines(std::size_t lit_index, const Material& material, std::si
 LobeShape ShadowRays::set_shape(std::size_t hit, std::size_t set) const {
     const std::uint32_t material = hits_->material[hit];
     const std::size_t lobe = materials_[material].lobes[set];
-    return sampled_shape(lobes_[material].shape(lobe, hits_->parameters(hit)[lobe]));
+    return sampled_shape(lobes_[material].shape(lobe, hits_->forms(hit)[lobe]));
 }
 
 void ShadowRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
@@ -166,7 +166,7 @@ void ShadowRays::add_densities(std::size_t lit_index) {
 
 ShadowRays::Sums ShadowRays::sum(std::size_t lit_index, std::size_t lobe, bool split) {
     const std::size_t hit = lit_->hit[lit_index];
-    const LobeShape shape = lobes_[hits_->material[hit]].shape(lobe, hits_->parameters(hit)[lobe]);
+    const LobeShape shape = lobes_[hits_->material[hit]].shape(lobe, hits_->forms(hit)[lobe]);
     gather(lit_index);
     weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), false);
     const bool is_grey = rays_.color.empty() && tracer_->is_opaque() && !hits_->terminator[hit].dims();

@@ -80,7 +80,7 @@ void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& 
         lights_->see(range, points.frame[point], points.error[point], views_);
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             float* of_lobe = values(p, lobe, range);
-            const LobeShape shape = materials_[points.material[point]].shape(lobe, points.parameters(point)[lobe]);
+            const LobeShape shape = materials_[points.material[point]].shape(lobe, points.forms(point)[lobe]);
             lights_->reflect(range, views_, shape, cosine, of_lobe);
             const Rgb weight = static_cast<float>(points.hit_count(point)) * glm::abs(points.weight(point, lobe));
             add_weighted(of_lobe, lights_->magnitudes(range.begin), weight, range.count, own);

@@ -107,7 +107,7 @@ void ShadowedLight::shade_lobe(const LitGroup& group, std::size_t lobe, Hits& hi
     for (std::size_t i = 0; i < group.range.size(); ++i) {
         if (!shines(begin + i, lobe)) continue;
         const std::size_t hit = lit_.hit[begin + i];
-        hit_sums_[i] = rays_.sum(begin + i, lobe, light_.splits(hits.material[hit], lobe, hits.parameters(hit)[lobe]));
+        hit_sums_[i] = rays_.sum(begin + i, lobe, light_.splits(hits.material[hit], lobe, hits.forms(hit)[lobe]));
         const Vec3d weight(glm::abs(hits.weight(hit, lobe)));
         hit_sums_[i].smooth *= weight;
         hit_sums_[i].spots *= weight;

@@ -170,7 +170,7 @@ Rgb SharedShadowLights::value(std::size_t sample, const Hits& hits) const {
     Vec3d sum(0);
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
         if (unshadowed_[light][lobe * points_->size() + points_->of_hit[hit]] != Rgb(0)) {
-            const LobeShape shape = material.shape(lobe, hits.parameters(hit)[lobe]);
+            const LobeShape shape = material.shape(lobe, hits.forms(hit)[lobe]);
             sum += Vec3d(glm::abs(hits.weight(hit, lobe))) * (weight * lobe_value(shape, direction, hits.view(hit)));
         }
     }

@@ -17,9 +17,9 @@ struct UnshadowedLight {
     const EnvironmentShading* environment = nullptr;  ///< whose spots are apart; null: there are none
 
     Rgb operator[](std::size_t i) const { return environment != nullptr ? smooth[i] + spots[i] : smooth[i]; }
-    /// Whether the spots are apart for a lobe of this width.
-    bool splits(std::size_t material, std::size_t lobe, float width) const {
-        return environment != nullptr && environment->splits(material, lobe, width);
+    /// Whether the spots are apart for a lobe of this form.
+    bool splits(std::size_t material, std::size_t lobe, const LobeForm& form) const {
+        return environment != nullptr && environment->splits(material, lobe, form);
     }
 };
 

@@ -87,12 +87,12 @@ void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std:
         const std::span<const Rgb> own = points.weights(point);
         weights_.insert(weights_.end(), own.begin(), own.end());
     }
-    parameters_.clear();
+    forms_.clear();
     for (const std::uint32_t point : material.varies() ? some : some.first(0)) {
-        const std::span<const float> own = points.parameters(point);
-        parameters_.insert(parameters_.end(), own.begin(), own.end());
+        const std::span<const LobeForm> own = points.forms(point);
+        forms_.insert(forms_.end(), own.begin(), own.end());
     }
-    views_.assign(material, cosines_, {weights_, lobe_stride_}, {parameters_, lobe_stride_}, true);
+    views_.assign(material, cosines_, {weights_, lobe_stride_}, {forms_, lobe_stride_}, true);
     tolerance_ = material.tolerance();
     if (views_.lobe_count() == 0) {
         return;

@@ -77,7 +77,7 @@ class UnshadowedRadiance {
     std::vector<std::uint32_t> by_material_, next_of_material_;
     std::vector<double> cosines_;
     std::vector<Rgb> weights_;
-    std::vector<float> parameters_;
+    std::vector<LobeForm> forms_;
     MaterialViews views_;  // of some points
     LobeIntegrator batch_;
     LocalLights seen_;

@@ -59,7 +59,7 @@ class DirectionSums {
 ArcPath path_of(const Arc<double>& arc, const Vec3d& view, double width) {
     const double apart = arc.cosine + glm::dot(arc.axis, view);
     const double least = std::copysign(0.1 * width, apart);
-    return {arc, view + (std::abs(apart) < std::abs(least) ? least - apart : 0.0) * arc.axis, width};
+    return {arc, view + (std::abs(apart) < std::abs(least) ? least - apart : 0.0) * arc.axis, glm::dvec2(width)};
 }
 
 bool is_lambert(const WeightedLobe& lobe) {

@@ -88,7 +88,7 @@ class RadialSumsByAlpha {
 };
 
 template <class Radial>
-BoundaryQuadrature<Radial> integrate(const Radial& radial, const Vec3d& view, double alpha,
+BoundaryQuadrature<Radial> integrate(const Radial& radial, const Vec3d& view, const glm::dvec2& alpha,
                                      std::span<const Arc<double>> arcs) {
     BoundaryQuadrature<Radial> boundary(radial);
     for (const Arc<double>& arc : arcs) {
@@ -96,6 +96,10 @@ BoundaryQuadrature<Radial> integrate(const Radial& radial, const Vec3d& view, do
     }
     boundary.refine();
     return boundary;
+}
+
+Vec3d turned(const Vec3d& v, double cosine, double sine) {
+    return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z};
 }
 
 /// A point of a boundary: the direction of light, and that of its half vector in the plane of slopes.
@@ -177,8 +181,23 @@ BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, s
     }
     const Vec3d view = resolved_view(cos_theta_o);
     const RadialSums radial(shape, view.z, tolerance, albedo);
-    const auto boundary = integrate(radial, view, lobe_width(shape), arcs);
-    return {boundary.sum()[0], boundary.error(), boundary.points() * static_cast<int>(radial.points())};
+    const auto result = [&](const Vec3d& own_view, const glm::dvec2& alpha, std::span<const Arc<double>> own) {
+        const auto boundary = integrate(radial, own_view, alpha, own);
+        return BoundaryIntegral{boundary.sum()[0], boundary.error(),
+                                boundary.points() * static_cast<int>(radial.points())};
+    };
+    if (!is_stretched(shape)) {
+        return result(view, glm::dvec2(lobe_width(shape)), arcs);
+    }
+    const auto& ggx = std::get<GgxShape>(shape);
+    const double c = std::cos(ggx.azimuth);
+    const double s = std::sin(ggx.azimuth);
+    std::vector<Arc<double>> own(arcs.begin(), arcs.end());
+    for (Arc<double>& arc : own) {
+        arc.axis = turned(arc.axis, c, s);
+        arc.middle = turned(arc.middle, c, s);
+    }
+    return result(turned(view, c, s), {ggx.alpha, ggx.across}, own);
 }
 
 std::array<double, 3> boundary_integral_by_alpha(std::span<const WeightedLobe> lobes, double cos_theta_o,
@@ -189,7 +208,7 @@ std::array<double, 3> boundary_integral_by_alpha(std::span<const WeightedLobe> l
     }
     const Vec3d view = resolved_view(cos_theta_o);
     const RadialSumsByAlpha radial(shortest_radii(lobes, view, arcs));
-    return integrate(radial, view, lobe_width(lobes[0].shape), arcs).sum();
+    return integrate(radial, view, glm::dvec2(lobe_width(lobes[0].shape)), arcs).sum();
 }
 
 }  // namespace shlight

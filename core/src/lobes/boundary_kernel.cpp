@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include <hwy/contrib/math/math-inl.h>
 
@@ -104,6 +105,10 @@ class SlopeNdfLanes {
     /// divided out.
     HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sin_azimuth, V<D> sine, V<D> cosine) const {
         const D d;
+        if constexpr (std::is_same_v<Lobe, StretchedLanes>) {
+            return weighed(lobe_.along_x(d, hn::Mul(sine, cos_azimuth)), lobe_.along_y(d, hn::Mul(sine, sin_azimuth)),
+                           cosine);
+        }
         const auto cos_o = all(d, cos_o_);
         const auto x = hn::Mul(all(d, width_), sine);
         const auto square = hn::MulAdd(x, x, hn::Mul(cosine, cosine));
@@ -114,6 +119,18 @@ class SlopeNdfLanes {
         const auto across = hn::Mul(x, inverse);
         const HalfVector<D> half = {hn::Mul(across, cos_azimuth), hn::Mul(across, sin_azimuth),
                                     hn::Mul(cosine, inverse), hn::Mul(towards, inverse)};
+        const auto value = hn::Mul(lobe_.over_ndf(d, half, cos_i, view_), towards);
+        return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
+    }
+    /// The same of a stretched lobe, at the half vector (x, y, z) / √square in its axes.
+    HWY_INLINE V<D> weighed(V<D> x, V<D> y, V<D> z) const {
+        const D d;
+        const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+        const auto towards = hn::MulAdd(view_.cosine, z, hn::MulAdd(view_.x, x, hn::Mul(view_.y, y)));
+        const HalfVector<D> half = {hn::Mul(x, inverse), hn::Mul(y, inverse), hn::Mul(z, inverse),
+                                    hn::Mul(towards, inverse)};
+        const auto cos_i = hn::MulSub(hn::Add(half.cosine, half.cosine), half.z, view_.cosine);
         const auto value = hn::Mul(lobe_.over_ndf(d, half, cos_i, view_), towards);
         return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
     }

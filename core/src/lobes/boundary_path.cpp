@@ -17,9 +17,10 @@ Vec3d resolved_view(double cos_theta_o) {
     return {std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine};
 }
 
-ArcPath::ArcPath(const Arc<double>& arc, const Vec3d& view, double alpha) : closed_(arc.half >= std::numbers::pi) {
+ArcPath::ArcPath(const Arc<double>& arc, const Vec3d& view, const glm::dvec2& alpha)
+    : closed_(arc.half >= std::numbers::pi) {
     const Vec3d u = arc.sine * arc.middle;
-    const Vec3d scale(1 / alpha, 1 / alpha, 1);
+    const Vec3d scale(1 / alpha.x, 1 / alpha.y, 1);
     columns_ = {(arc.cosine * arc.axis + view) * scale, u * scale, glm::cross(arc.axis, u) * scale};
     even_out();
     path_ = {columns_[0], columns_[1], columns_[2], flatness_};

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <numbers>
 
 #include "lobes/boundary_kernel.h"
@@ -27,7 +28,8 @@ Vec3d resolved_view(double cos_theta_o);
 /// does not.
 class ArcPath {
   public:
-    ArcPath(const Arc<double>& arc, const Vec3d& view, double alpha);
+    /// alpha: of the lobe, along x and y.
+    ArcPath(const Arc<double>& arc, const Vec3d& view, const glm::dvec2& alpha);
 
     bool is_closed() const { return closed_; }
     double start() const { return start_; }

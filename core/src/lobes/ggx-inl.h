@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <numbers>
 
 #include <hwy/contrib/math/math-inl.h>
@@ -173,6 +174,41 @@ class GgxLanes {
     double ior_;
 };
 
+/// cosθ (1 + 2 Λ) of Beckmann's distribution, as LobeAxes of ggx.cpp has it. across: α sinθ.
+template <class D>
+HWY_INLINE V<D> beckmann_masking(D d, V<D> across, V<D> cosine) {
+    const auto a = hn::Div(cosine, hn::Max(across, all(d, 1e-30)));
+    const auto above = hn::MulAdd(hn::MulAdd(all(d, 0.396), a, all(d, -1.259)), a, all(d, 1));
+    const auto below = hn::MulAdd(all(d, 2.181), a, all(d, 3.535));
+    const auto lambda = hn::Div(hn::Mul(hn::Add(across, across), above), below);
+    return hn::Add(cosine, hn::IfThenElseZero(hn::Lt(a, all(d, kUnmasked)), lambda));
+}
+
+/// A half vector as a distribution of slopes sees it: tan²θ_h in units of α², and what it is divided by for that. norm:
+/// α² (n + 1) / 2 of Ashikhmin & Shirley's exponent n.
+template <class D>
+struct RoundHalf {
+    V<D> slope2, over_tangent2, norm;
+};
+
+/// 4 f·cos / D ÷ Fresnel's factor, of a distribution other than GGX. cos_half: ω_i·h; masking(): of ω_i.
+template <class D, class Masking>
+HWY_INLINE V<D> over_ndf_of_others(D d, Microfacets distribution, const RoundHalf<D>& half, V<D> cos_half, V<D> cos_i,
+                                   V<D> cos_o, V<D> masking_o, const Masking& masking) {
+    const auto over_ggx = hn::Add(all(d, 1), half.slope2);
+    const auto factor = hn::Mul(cos_i, hn::Mul(over_ggx, over_ggx));
+    if (distribution == Microfacets::ashikhmin_shirley) {
+        // cosⁿθ_h ÷ the cos⁻⁴θ_h of GGX
+        const auto tangent2 = hn::Div(half.slope2, half.over_tangent2);
+        const auto power = hn::Add(half.over_tangent2, all(d, 1));
+        const auto lobe = hn::Exp(d, hn::Neg(hn::Mul(power, hn::Log1p(d, tangent2))));
+        const auto pump = hn::Mul(hn::Max(cos_half, all(d, 1e-6)), hn::Max(cos_i, cos_o));
+        return hn::Div(hn::Mul(hn::Mul(factor, half.norm), lobe), pump);
+    }
+    const auto both = hn::MulAdd(cos_o, masking(), hn::Mul(cos_i, masking_o));
+    return hn::Div(hn::Mul(hn::Add(factor, factor), hn::Exp(d, hn::Neg(half.slope2))), both);
+}
+
 /// Microfacets of any distribution and Fresnel factor, which are looked up at each call. f·cos is GGX's D times slowly
 /// varying factors.
 class MicrofacetLanes {
@@ -215,39 +251,140 @@ class MicrofacetLanes {
         const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
         const auto up = hn::Max(hn::Mul(half.z, half.z), all(d, 1e-12));
         const auto slope2 = hn::Min(hn::Div(across, hn::Mul(view.ggx.alpha2, up)), all(d, kLargestSlope2));
-        const auto over_ggx = hn::Add(all(d, 1), slope2);
-        const auto factor = hn::Mul(hn::Mul(fresnel, cos_i), hn::Mul(over_ggx, over_ggx));
-        if (shape_.distribution == Microfacets::ashikhmin_shirley) {
-            // cosⁿθ_h ÷ the cos⁻⁴θ_h of GGX
-            const auto tangent2 = hn::Mul(slope2, view.ggx.alpha2);
-            const auto power = hn::Add(hn::Div(all(d, 1), view.ggx.alpha2), all(d, 1));
-            const auto lobe = hn::Exp(d, hn::Neg(hn::Mul(power, hn::Log1p(d, tangent2))));
-            const auto norm = hn::NegMulAdd(all(d, 0.5), view.ggx.alpha2, all(d, 1));
-            const auto pump = hn::Mul(hn::Max(half.cosine, all(d, 1e-6)), hn::Max(cos_i, view.ggx.cosine));
-            return hn::Div(hn::Mul(hn::Mul(factor, norm), lobe), pump);
-        }
-        const auto both = hn::MulAdd(view.ggx.cosine, masking(d, view.alpha, cos_i), hn::Mul(cos_i, view.masking));
-        return hn::Div(hn::Mul(hn::Add(factor, factor), hn::Exp(d, hn::Neg(slope2))), both);
+        const RoundHalf<D> round = {slope2, hn::Div(all(d, 1), view.ggx.alpha2),
+                                    hn::NegMulAdd(all(d, 0.5), view.ggx.alpha2, all(d, 1))};
+        const auto own = over_ndf_of_others(d, shape_.distribution, round, half.cosine, cos_i, view.ggx.cosine,
+                                            view.masking, [&] HWY_ATTR { return masking(d, view.alpha, cos_i); });
+        return hn::Mul(fresnel, own);
     }
 
   private:
-    /// beckmann_masking() in lanes.
     template <class D>
     static HWY_INLINE V<D> masking(D d, V<D> alpha, V<D> cosine) {
-        const auto across = hn::Mul(alpha, hn::Sqrt(hn::Max(hn::Zero(d), hn::NegMulAdd(cosine, cosine, all(d, 1)))));
-        const auto a = hn::Div(cosine, hn::Max(across, all(d, 1e-30)));
-        const auto above = hn::MulAdd(hn::MulAdd(all(d, 0.396), a, all(d, -1.259)), a, all(d, 1));
-        const auto below = hn::MulAdd(all(d, 2.181), a, all(d, 3.535));
-        const auto lambda = hn::Div(hn::Mul(hn::Add(across, across), above), below);
-        return hn::Add(cosine, hn::IfThenElseZero(hn::Lt(a, all(d, kUnmasked)), lambda));
+        const auto sine = hn::Sqrt(hn::Max(hn::Zero(d), hn::NegMulAdd(cosine, cosine, all(d, 1))));
+        return beckmann_masking(d, hn::Mul(alpha, sine), cosine);
     }
 
     GgxShape shape_;
     Ggx ggx_;
 };
 
+/// Microfacets with two widths, α_x and α_y, which all lanes share. over_ndf() takes vectors in the lobe's axes.
+class StretchedLanes {
+  public:
+    template <class D>
+    struct View {
+        V<D> x, y, cosine;     // ω_o in the lobe's axes
+        V<D> spread, masking;  // √(cos²θ_o + α_x² x² + α_y² y²), and cosθ_o (1 + 2 Λ(θ_o))
+    };
+
+    explicit StretchedLanes(const GgxShape& shape)
+        : shape_(shape), turn_cosine_(std::cos(shape.azimuth)), turn_sine_(std::sin(shape.azimuth)) {}
+
+    template <class D>
+    HWY_INLINE View<D> view(D d, V<D> cos_o, V<D> /*parameter*/) const {
+        const auto sine = hn::Sqrt(hn::Max(hn::Zero(d), hn::NegMulAdd(cos_o, cos_o, all(d, 1))));
+        const auto x = hn::Mul(sine, all(d, turn_cosine_));
+        const auto y = hn::Mul(sine, all(d, turn_sine_));
+        return {x, y, cos_o, hn::Sqrt(hn::MulAdd(cos_o, cos_o, across(d, x, y))), masking(d, x, y, cos_o)};
+    }
+
+    HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
+        const Floats d;
+        const HalfSum own = turned(sum);
+        const auto square = hn::MulAdd(own.x, own.x, hn::MulAdd(own.y, own.y, hn::Mul(own.z, own.z)));
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+        const HalfVector<Floats> half = {hn::Mul(own.x, inverse), hn::Mul(own.y, inverse), hn::Mul(own.z, inverse),
+                                         hn::Mul(all(d, 0.5), hn::Mul(square, inverse))};
+        const auto quarter = hn::Mul(all(d, 0.25), distribution(d, half.x, half.y, half.z));
+        return hn::Mul(quarter, over_ndf(d, half, cos_i, view));
+    }
+
+    HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> /*cos_i*/, const View<Floats>& view) const {
+        const Floats d;
+        const HalfSum own = turned(sum);
+        const auto square = hn::MulAdd(own.x, own.x, hn::MulAdd(own.y, own.y, hn::Mul(own.z, own.z)));
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
+        const auto ndf = distribution(d, hn::Mul(own.x, inverse), hn::Mul(own.y, inverse), hn::Mul(own.z, inverse));
+        return hn::Div(hn::Mul(all(d, 0.5), ndf), hn::Add(view.cosine, view.spread));
+    }
+
+    template <class D>
+    HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
+        const auto twice = hn::Add(half.cosine, half.cosine);
+        const auto light_x = hn::MulSub(twice, half.x, view.x);
+        const auto light_y = hn::MulSub(twice, half.y, view.y);
+        const auto fresnel = fresnel_of(d, shape_, half.cosine);
+        if (shape_.distribution == Microfacets::ggx) {
+            const auto spread = hn::Sqrt(hn::MulAdd(cos_i, cos_i, across(d, light_x, light_y)));
+            const auto both = hn::MulAdd(view.cosine, spread, hn::Mul(cos_i, view.spread));
+            return hn::Mul(fresnel, hn::Div(hn::Add(cos_i, cos_i), both));
+        }
+        const auto tangents = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
+        const auto slopes = round(d, half.x, half.y);
+        const auto up = hn::Max(hn::Mul(half.z, half.z), all(d, 1e-12));
+        const double x2 = shape_.alpha * shape_.alpha;
+        const double y2 = shape_.across * shape_.across;
+        const auto least = hn::Max(tangents, all(d, 1e-30));
+        const RoundHalf<D> own = {hn::Min(hn::Div(slopes, up), all(d, kLargestSlope2)),
+                                  hn::Min(hn::Max(hn::Div(slopes, least), all(d, 1 / y2)), all(d, 1 / x2)),
+                                  all(d, std::sqrt((1 - x2 / 2) * (1 - y2 / 2)))};
+        const auto value =
+            over_ndf_of_others(d, shape_.distribution, own, half.cosine, cos_i, view.cosine, view.masking,
+                               [&] HWY_ATTR { return masking(d, light_x, light_y, cos_i); });
+        return hn::Mul(fresnel, value);
+    }
+
+    /// A slope times the width along its axis, for boundary_integral.h.
+    template <class D>
+    HWY_INLINE V<D> along_x(D d, V<D> slope) const {
+        return hn::Mul(all(d, shape_.alpha), slope);
+    }
+    template <class D>
+    HWY_INLINE V<D> along_y(D d, V<D> slope) const {
+        return hn::Mul(all(d, shape_.across), slope);
+    }
+
+  private:
+    HWY_INLINE HalfSum turned(const HalfSum& v) const {
+        const Floats d;
+        const auto c = all(d, turn_cosine_);
+        const auto s = all(d, turn_sine_);
+        return {hn::MulSub(c, v.x, hn::Mul(s, v.y)), hn::MulAdd(s, v.x, hn::Mul(c, v.y)), v.z};
+    }
+    /// α_x² x² + α_y² y².
+    template <class D>
+    HWY_INLINE V<D> across(D d, V<D> x, V<D> y) const {
+        const auto own_x = along_x(d, x);
+        const auto own_y = along_y(d, y);
+        return hn::MulAdd(own_x, own_x, hn::Mul(own_y, own_y));
+    }
+    /// x² / α_x² + y² / α_y².
+    template <class D>
+    HWY_INLINE V<D> round(D d, V<D> x, V<D> y) const {
+        const auto own_x = hn::Mul(x, all(d, 1 / shape_.alpha));
+        const auto own_y = hn::Mul(y, all(d, 1 / shape_.across));
+        return hn::MulAdd(own_x, own_x, hn::Mul(own_y, own_y));
+    }
+    HWY_INLINE V<Floats> distribution(Floats d, V<Floats> x, V<Floats> y, V<Floats> z) const {
+        const auto square = hn::MulAdd(z, z, round(d, x, y));
+        // Divided in this order a narrow lobe stays within a float's range.
+        return hn::Div(hn::Div(all(d, 1 / (std::numbers::pi * shape_.alpha * shape_.across)), square), square);
+    }
+    template <class D>
+    HWY_INLINE V<D> masking(D d, V<D> x, V<D> y, V<D> cosine) const {
+        return beckmann_masking(d, hn::Sqrt(across(d, x, y)), cosine);
+    }
+
+    GgxShape shape_;
+    double turn_cosine_, turn_sine_;
+};
+
 template <class Function>
 void with_lanes_of(const GgxShape& shape, const Function& function) {
+    if (shape.across != 0) {
+        return function(StretchedLanes(shape));
+    }
     if (shape.distribution != Microfacets::ggx) {
         return function(MicrofacetLanes(shape));
     }

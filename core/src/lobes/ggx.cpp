@@ -42,64 +42,86 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
     return 0;
 }
 
-/// √(α² + (1-α²) cos²θ).
-double masking(double a2, double cosine) {
-    return std::sqrt(a2 + (1 - a2) * cosine * cosine);
-}
+/// A lobe's axes, in which vectors are given to its members.
+class LobeAxes {
+  public:
+    explicit LobeAxes(const GgxShape& shape)
+        : x_(shape.alpha),
+          y_(shape.across != 0 ? shape.across : shape.alpha),
+          cosine_(std::cos(shape.azimuth)),
+          sine_(std::sin(shape.azimuth)) {}
 
-/// √(π α² D) = α² |s|² / (α² s_z² + s_x² + s_y²) of s = ω_i + ω_o. It uses sin²θ_h, since 1 - cos²θ_h would lose the
-/// digits that decide the peak of a narrow lobe.
-double sharpness(double a2, const Vec3d& sum) {
-    return a2 * glm::dot(sum, sum) / (a2 * sum.z * sum.z + (sum.x * sum.x + sum.y * sum.y));
-}
+    /// A vector of the view's frame.
+    Vec3d turned(const Vec3d& v) const { return {cosine_ * v.x - sine_ * v.y, sine_ * v.x + cosine_ * v.y, v.z}; }
+    Vec3d turned_back(const Vec3d& v) const { return {cosine_ * v.x + sine_ * v.y, cosine_ * v.y - sine_ * v.x, v.z}; }
+    Vec3d stretched(const Vec3d& v) const { return {x_ * v.x, y_ * v.y, v.z}; }
+    Vec3d shrunk(const Vec3d& v) const { return {v.x / x_, v.y / y_, v.z}; }
+    double x() const { return x_; }
+    double y() const { return y_; }
 
-/// G₁ / (4 cosθ_o) with G₁ = 2 cosθ_o / (cosθ_o + masking): cosθ_o cancels, so grazing angles are finite.
-double visible_share(double a2, double cos_theta_o) {
-    return 0.5 / (cos_theta_o + masking(a2, cos_theta_o));
-}
-
-/// cosθ (1 + 2 Λ) of Beckmann's distribution, with Λ = 0 where tanθ < 1/(1.6 α); as a quotient it is finite for grazing
-/// angles.
-double beckmann_masking(double alpha, double cosine) {
-    const double across = alpha * std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    if (cosine >= kUnmasked * across) {
-        return cosine;
+    /// √(cos²θ + α_x² x² + α_y² y²) of a unit vector.
+    double masking(const Vec3d& v) const { return glm::length(stretched(v)); }
+    /// D at the half vector of s = ω_i + ω_o. It uses sin²θ_h, since 1 - cos²θ_h would lose the digits that decide the
+    /// peak of a narrow lobe.
+    double distribution(const Vec3d& sum) const {
+        const Vec3d round = shrunk(sum);
+        const double ratio = glm::dot(sum, sum) / glm::dot(round, round);
+        return ratio * ratio / (pi * x_ * y_);
     }
-    const double a = cosine / across;
-    return cosine + 2 * across * ((0.396 * a - 1.259) * a + 1) / (2.181 * a + 3.535);
-}
+    /// G₁ / (4 cosθ_o) with G₁ = 2 cosθ_o / (cosθ_o + masking): cosθ_o cancels, so grazing angles are finite.
+    double visible_share(const Vec3d& wo) const { return 0.5 / (wo.z + masking(wo)); }
+    /// cosθ (1 + 2 Λ) of Beckmann's distribution, with Λ = 0 where tanθ < 1/(1.6 α); as a quotient it is finite for
+    /// grazing angles.
+    double beckmann_masking(const Vec3d& v) const {
+        const double across = std::hypot(x_ * v.x, y_ * v.y);
+        if (v.z >= kUnmasked * across) {
+            return v.z;
+        }
+        const double a = v.z / across;
+        return v.z + 2 * across * ((0.396 * a - 1.259) * a + 1) / (2.181 * a + 3.535);
+    }
 
-/// f·cos ÷ Fresnel's factor, for distributions other than GGX. tangent2: tan²θ_h; cosine: ω_i·h.
-double other_microfacets(const GgxShape& shape, double tangent2, double cosine, double cos_i, double cos_o) {
-    const double a2 = shape.alpha * shape.alpha;
+  private:
+    double x_, y_;  // α
+    double cosine_, sine_;
+};
+
+/// f·cos ÷ Fresnel's factor, for distributions other than GGX. cosine: ω_i·h.
+double other_microfacets(const GgxShape& shape, const LobeAxes& axes, const Vec3d& wi, const Vec3d& wo, double cosine) {
+    const Vec3d sum = wi + wo;
+    const Vec3d round = axes.shrunk(sum);
+    const double tangent2 = (sum.x * sum.x + sum.y * sum.y) / (sum.z * sum.z);
+    const double slope2 = (round.x * round.x + round.y * round.y) / (sum.z * sum.z);
+    const double a2 = axes.x() * axes.y();
     if (shape.distribution == Microfacets::ashikhmin_shirley) {
-        const double lobe = (2 / a2 - 1) / (8 * pi) * std::exp(-(1 / a2 - 1) * std::log1p(tangent2));
-        return lobe * cos_i / (cosine * std::max(cos_i, cos_o));
+        const double norm = std::sqrt((2 / (axes.x() * axes.x()) - 1) * (2 / (axes.y() * axes.y()) - 1)) / (8 * pi);
+        const double power = tangent2 > 0 ? slope2 / tangent2 - 1 : 0;
+        const double lobe = norm * std::exp(-power * std::log1p(tangent2));
+        return lobe * wi.z / (cosine * std::max(wi.z, wo.z));
     }
-    const double spread = std::exp(-tangent2 / a2) * (1 + tangent2) * (1 + tangent2) / (pi * a2);
-    return 0.5 * spread * cos_i /
-           (cos_o * beckmann_masking(shape.alpha, cos_i) + cos_i * beckmann_masking(shape.alpha, cos_o));
+    const double spread = std::exp(-slope2) * (1 + tangent2) * (1 + tangent2) / (pi * a2);
+    return 0.5 * spread * wi.z / (wo.z * axes.beckmann_masking(wi) + wi.z * axes.beckmann_masking(wo));
 }
 
 }  // namespace
 
-/// GGX has F D G₂ / (4 cosθ_o) with D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o) = ½ / (cosθ_o
-/// √(α² + (1-α²) cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), which is finite at grazing angles.
+/// GGX has F D G₂ / (4 cosθ_o) with D = 1 / (π α_x α_y |(h_x/α_x, h_y/α_y, h_z)|⁴) and G₂ / (4 cosθ_i cosθ_o) = ½ /
+/// (cosθ_o masking(ω_i) + cosθ_i masking(ω_o)), which is finite at grazing angles.
 double GgxShape::value(const Vec3d& wi, const Vec3d& wo) const {
-    const double a2 = alpha * alpha;
-    const Vec3d sum = wi + wo;
+    const LobeAxes axes(*this);
+    const Vec3d in = axes.turned(wi);
+    const Vec3d out = axes.turned(wo);
+    const Vec3d sum = in + out;
     const double square = glm::dot(sum, sum);
     if (!(square > 0)) {
         return 0;
     }
     const double cosine = std::min(1.0, std::sqrt(square) / 2);  // ω_i·h
     if (distribution != Microfacets::ggx) {
-        const double tangent2 = (sum.x * sum.x + sum.y * sum.y) / (sum.z * sum.z);
-        return fresnel_factor(*this, cosine) * other_microfacets(*this, tangent2, cosine, wi.z, wo.z);
+        return fresnel_factor(*this, cosine) * other_microfacets(*this, axes, in, out, cosine);
     }
-    const double ratio = sharpness(a2, sum);
-    const double visibility = 0.5 / (wo.z * masking(a2, wi.z) + wi.z * masking(a2, wo.z));
-    return fresnel_factor(*this, cosine) * ratio * ratio / (pi * a2) * visibility * wi.z;
+    const double visibility = 0.5 / (out.z * axes.masking(in) + in.z * axes.masking(out));
+    return fresnel_factor(*this, cosine) * axes.distribution(sum) * visibility * in.z;
 }
 
 double GgxShape::albedo(double cos_theta_o) const {
@@ -113,23 +135,25 @@ double GgxShape::albedo(double cos_theta_o) const {
 Vec3d GgxShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
     // Visible normals by spherical caps (Dupuy & Benyoub 2023): stretched by 1/α the microfacets are a hemisphere,
     // which reflects parallel light evenly into the cap z > -cosine of the view.
-    const Vec3d view = glm::normalize(Vec3d(alpha * wo.x, alpha * wo.y, wo.z));
+    const LobeAxes axes(*this);
+    const Vec3d out = axes.turned(wo);
+    const Vec3d view = glm::normalize(axes.stretched(out));
     const double z = (1 - point.y) * (1 + view.z) - view.z;
     const double sine = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
-    const double azimuth = 2 * pi * point.x;
-    const Vec3d h = Vec3d(sine * std::cos(azimuth), sine * std::sin(azimuth), z) + view;
-    const Vec3d normal = glm::normalize(Vec3d(alpha * h.x, alpha * h.y, h.z));
-    return glm::normalize(2 * glm::dot(wo, normal) * normal - wo);
+    const double turn = 2 * pi * point.x;
+    const Vec3d h = Vec3d(sine * std::cos(turn), sine * std::sin(turn), z) + view;
+    const Vec3d normal = glm::normalize(axes.stretched(h));
+    return axes.turned_back(glm::normalize(2 * glm::dot(out, normal) * normal - out));
 }
 
 double GgxShape::density(const Vec3d& wo, const Vec3d& wi) const {
-    const double a2 = alpha * alpha;
-    const double ratio = sharpness(a2, wi + wo);
-    return visible_share(a2, wo.z) * ratio * ratio / (pi * a2);
+    const LobeAxes axes(*this);
+    return axes.visible_share(axes.turned(wo)) * axes.distribution(axes.turned(wi + wo));
 }
 
 double GgxShape::largest_density(const Vec3d& wo) const {
-    return visible_share(alpha * alpha, wo.z) / (pi * alpha * alpha);
+    const LobeAxes axes(*this);
+    return axes.visible_share(axes.turned(wo)) / (pi * axes.x() * axes.y());
 }
 
 }  // namespace shlight

@@ -64,19 +64,26 @@ HWY_INLINE Vectors sample(const LambertShape& /*shape*/, const Vec3d& /*view*/, 
 HWY_INLINE Vectors sample(const GgxShape& shape, const Vec3d& view, V<Floats> u, V<Floats> v) {
     const Floats d;
     const auto one = all(d, 1);
-    const Vec3d bent = glm::normalize(Vec3d(shape.alpha * view.x, 0, view.z));
+    const double c = std::cos(shape.azimuth);
+    const double s = std::sin(shape.azimuth);
+    const double width_y = shape.across != 0 ? shape.across : shape.alpha;
+    const Vec3d own(c * view.x, s * view.x, view.z);  // in the lobe's axes
+    const Vec3d bent = glm::normalize(Vec3d(shape.alpha * own.x, width_y * own.y, own.z));
     // z + bent.z
     const auto raised = hn::Mul(hn::Sub(one, v), all(d, 1 + bent.z));
     const auto z = hn::Sub(raised, all(d, bent.z));
     const auto sine = root(d, hn::Mul(hn::Sub(one, z), hn::Add(one, z)));
     const auto azimuth = hn::Mul(all(d, 2 * std::numbers::pi), u);
-    const auto alpha = all(d, shape.alpha);
     const Vectors normal =
-        normalized({hn::Mul(alpha, hn::MulAdd(sine, hn::Cos(d, azimuth), all(d, bent.x))),
-                    hn::Mul(alpha, hn::Mul(sine, hn::Sin(d, azimuth))), hn::Max(raised, all(d, 1e-30))});
-    const auto cosine = dot(normal, view);
+        normalized({hn::Mul(all(d, shape.alpha), hn::MulAdd(sine, hn::Cos(d, azimuth), all(d, bent.x))),
+                    hn::Mul(all(d, width_y), hn::MulAdd(sine, hn::Sin(d, azimuth), all(d, bent.y))),
+                    hn::Max(raised, all(d, 1e-30))});
+    const auto cosine = dot(normal, own);
     const Vectors twice = scaled(normal, hn::Add(cosine, cosine));
-    return {hn::Sub(twice.x, all(d, view.x)), twice.y, hn::Sub(twice.z, all(d, view.z))};
+    const auto x = hn::Sub(twice.x, all(d, own.x));
+    const auto y = hn::Sub(twice.y, all(d, own.y));
+    return {hn::MulAdd(all(d, c), x, hn::Mul(all(d, s), y)), hn::MulSub(all(d, c), y, hn::Mul(all(d, s), x)),
+            hn::Sub(twice.z, all(d, own.z))};
 }
 
 template <class Shape>

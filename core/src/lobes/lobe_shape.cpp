@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/lobe_shape.h"
 
+#include <algorithm>
+
 #include "shlight/lobe_table.h"
 
 namespace shlight {
@@ -11,19 +13,46 @@ double lobe_width(const LobeShape& shape) {
 
 bool is_anisotropic(const LobeShape& shape) {
     const auto* own = std::get_if<TableShape>(&shape);
-    return own != nullptr && !own->table->is_isotropic();
+    return own != nullptr ? !own->table->is_isotropic() : is_stretched(shape);
+}
+
+bool is_stretched(const LobeShape& shape) {
+    const auto* own = std::get_if<GgxShape>(&shape);
+    return own != nullptr && own->across != 0;
 }
 
 double lobe_parameter(const LobeShape& shape) {
-    return is_anisotropic(shape) ? std::get<TableShape>(shape).azimuth : lobe_width(shape);
+    const auto* table = std::get_if<TableShape>(&shape);
+    return table != nullptr && is_anisotropic(shape) ? table->azimuth : lobe_width(shape);
 }
 
-LobeShape with_parameter(const LobeShape& shape, double parameter) {
-    if (!is_anisotropic(shape)) {
-        return with_width(shape, parameter);
+LobeForm lobe_form(const LobeShape& shape) {
+    const auto width = static_cast<float>(lobe_width(shape));
+    if (const auto* table = std::get_if<TableShape>(&shape)) {
+        return {width, 0, static_cast<float>(table->azimuth)};
     }
+    const auto* ggx = std::get_if<GgxShape>(&shape);
+    return ggx != nullptr ? LobeForm{width, static_cast<float>(ggx->across), static_cast<float>(ggx->azimuth)}
+                          : LobeForm{width};
+}
+
+LobeShape with_form(const LobeShape& shape, const LobeForm& form) {
     LobeShape result = shape;
-    std::get<TableShape>(result).azimuth = parameter;
+    if (auto* ggx = std::get_if<GgxShape>(&result)) {
+        ggx->alpha = form.width;
+        // Lobes that a hit does not have keep the form of a new LobeForm.
+        ggx->across = ggx->across != 0 ? std::max(form.across, form.width) : 0.0F;
+    }
+    return with_azimuth(result, form.azimuth);
+}
+
+LobeShape with_azimuth(const LobeShape& shape, double azimuth) {
+    LobeShape result = shape;
+    if (auto* ggx = std::get_if<GgxShape>(&result)) {
+        ggx->azimuth = ggx->across != 0 ? azimuth : 0.0;
+    } else if (auto* table = std::get_if<TableShape>(&result)) {
+        table->azimuth = azimuth;
+    }
     return result;
 }
 

@@ -28,9 +28,10 @@ MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tole
         }
         lobes_.push_back(lobe);
         const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
-        grids_.push_back(lobe.varying_width != 0 && ggx != nullptr ? fit_grid(*ggx, order) : nullptr);
+        const bool stretched = is_stretched(lobe.shape);
+        grids_.push_back(lobe.varying_width != 0 && ggx != nullptr && !stretched ? fit_grid(*ggx, order) : nullptr);
         anisotropic_.push_back(
-            shlight::is_anisotropic(lobe.shape)
+            shlight::is_anisotropic(lobe.shape) && !stretched
                 ? anisotropic_fit(std::get<TableShape>(lobe.shape), auto_order_ ? lobe.only_order : order)
                 : nullptr);
         if (!auto_order_) {
@@ -51,10 +52,10 @@ LobeWeights MaterialLobes::weights(std::span<const double> cos_theta_o, std::vec
     return {values, vary ? lobes_.size() : 0};
 }
 
-double MaterialLobes::narrowest(double cos_theta_o, std::span<const float> parameters) const {
+double MaterialLobes::narrowest(double cos_theta_o, std::span<const LobeForm> forms) const {
     double least = 1;
     for (std::size_t i = 0; i < lobes_.size(); ++i) {
-        const LobeShape own = shape(i, parameters[i]);
+        const LobeShape own = shape(i, forms[i]);
         least = is_mirror(own) ? least : std::min(least, shlight::narrowest(own, cos_theta_o));
     }
     return least;

@@ -31,9 +31,9 @@ struct LobeWeights {
     std::size_t stride;  ///< 0: the views share their weights
 };
 
-/// lobe_parameter() of lobes that vary over a surface, laid out as LobeWeights.
-struct LobeParameters {
-    std::span<const float> values;  ///< empty: none varies
+/// Forms of lobes that vary over a surface, laid out as LobeWeights.
+struct LobeForms {
+    std::span<const LobeForm> values;  ///< empty: none varies
     std::size_t stride;
 };
 
@@ -49,26 +49,27 @@ class MaterialLobes {
     const BoostedFit* fit(std::size_t lobe) const { return auto_order_ ? lobes_[lobe].fit.get() : fits_[lobe].get(); }
     /// The fits that shade a lobe whose width varies; null for others.
     const FitGrid* grid(std::size_t lobe) const { return grids_[lobe].get(); }
-    /// The fits that shade an anisotropic lobe; null for others.
+    /// The fits that shade the lobe of an anisotropic table; null for others.
     const AnisotropicFit* anisotropic(std::size_t lobe) const { return anisotropic_[lobe].get(); }
     /// Whether any lobe varies over a surface, or depends on the azimuth of the view.
     bool varies() const {
         return std::any_of(lobes_.begin(), lobes_.end(), [](const Lobe& lobe) { return lobe.varies(); });
     }
     bool is_anisotropic() const {
-        return std::any_of(anisotropic_.begin(), anisotropic_.end(), [](const auto& fit) { return fit != nullptr; });
+        return std::any_of(lobes_.begin(), lobes_.end(),
+                           [](const Lobe& lobe) { return shlight::is_anisotropic(lobe.shape); });
     }
     /// Whether orders are chosen per view and light; otherwise a fit has only one order.
     bool auto_order() const { return auto_order_; }
     double tolerance() const { return tolerance_; }
     /// The lobes' weights at these views, stored in `values`, which must outlive the result.
     LobeWeights weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const;
-    /// Width of the narrowest lobe [rad], see narrowest() above. parameters: of each lobe, read where it varies.
-    double narrowest(double cos_theta_o, std::span<const float> parameters) const;
-    /// A lobe's shape; `parameter` replaces its own if that varies.
-    LobeShape shape(std::size_t lobe, float parameter) const {
+    /// Width of the narrowest lobe [rad], see narrowest() above. forms: of each lobe, read where it varies.
+    double narrowest(double cos_theta_o, std::span<const LobeForm> forms) const;
+    /// A lobe's shape; `form` replaces its own if that varies.
+    LobeShape shape(std::size_t lobe, const LobeForm& form) const {
         const Lobe& own = lobes_[lobe];
-        return own.varies() ? with_parameter(own.shape, double{parameter}) : own.shape;
+        return own.varies() ? with_form(own.shape, form) : own.shape;
     }
 
   private:

@@ -42,9 +42,10 @@ ViewOutput ViewPositions::arrays() {
 }
 
 void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions,
-                        const LobeWeights& weights, const LobeParameters& parameters, bool judged) {
+                        const LobeWeights& weights, const LobeForms& forms, bool judged) {
     lobe_ = &material.lobes()[lobe];
     weights_ = weights;
+    forms_ = forms;
     index_ = lobe;
     fit_ = material.fit(lobe);
     positions_ = &positions;
@@ -52,12 +53,12 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     std::copy_if(positions.all().begin(), positions.all().end(), std::back_inserter(weighed_),
                  [&](std::uint32_t view) { return weight(view) != Rgb(0); });
     anisotropic_ = material.anisotropic(lobe);
-    find_parameters(parameters, material.grid(lobe));
+    find_parameters(material.grid(lobe));
     layout_ = fit_ != nullptr ? fit_->table() : nullptr;
     if (!neighbours_.empty() && !is_black()) {
         layout_ = neighbours_[FitGrid::kNeighbours * weighed_.front()];
     }
-    chooses_ = material.auto_order() && !orders().empty();
+    chooses_ = is_stretched() || (material.auto_order() && !orders().empty());
     judged_ = judged;
     relative_tolerance_ = 0;
     has_boosts_ = false;
@@ -73,16 +74,20 @@ std::span<const int> LobeViews::orders() const {
                                      : std::span<const int>();
 }
 
-void LobeViews::find_parameters(const LobeParameters& parameters, const FitGrid* grid) {
+void LobeViews::find_parameters(const FitGrid* grid) {
     const std::size_t count = positions_->size();
     widths_.assign(padded_views(count), static_cast<float>(lobe_width(shape())));
     neighbours_.clear();
     neighbour_weights_.clear();
-    const auto own = [&](std::uint32_t view) { return parameters.values[view * parameters.stride + index_]; };
     if (anisotropic_ != nullptr) {
         azimuths_.assign(padded_views(count), 0);
         for (const std::uint32_t view : weighed_) {
-            azimuths_[view] = own(view);
+            azimuths_[view] = form(view).azimuth;
+        }
+    }
+    if (is_stretched()) {
+        for (const std::uint32_t view : weighed_) {
+            widths_[view] = form(view).width;
         }
     }
     if (grid == nullptr) {
@@ -91,7 +96,7 @@ void LobeViews::find_parameters(const LobeParameters& parameters, const FitGrid*
     neighbours_.resize(FitGrid::kNeighbours * count);
     neighbour_weights_.resize(FitGrid::kNeighbours * count);
     for (const std::uint32_t view : weighed_) {
-        widths_[view] = own(view);
+        widths_[view] = form(view).width;
         const FitGrid::Neighbours found = grid->neighbours(double{widths_[view]});
         const auto first = static_cast<std::ptrdiff_t>(FitGrid::kNeighbours * view);
         std::copy(found.tables.begin(), found.tables.end(), neighbours_.begin() + first);
@@ -118,7 +123,9 @@ void LobeViews::find_albedos() {
     albedo_.assign(count, 0);
     if (orders().empty()) {
         for (const std::uint32_t view : weighed_) {
-            albedo_[view] = static_cast<float>(lobe_->albedo(positions_->cosine()[view]));
+            const double cosine = positions_->cosine()[view];
+            albedo_[view] =
+                static_cast<float>(is_stretched() ? lobe_albedo(shape(view), cosine) : lobe_->albedo(cosine));
         }
         return;
     }
@@ -253,8 +260,8 @@ LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
 }
 
 void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o,
-                           const LobeWeights& weights, const LobeParameters& parameters, bool judged) {
-    const bool weighed = judged || material.auto_order();
+                           const LobeWeights& weights, const LobeForms& forms, bool judged) {
+    const bool weighed = judged || material.auto_order() || material.is_anisotropic();
     lobe_count_ = material.lobes().size();
     tolerance_ = material.tolerance();
     bool tabulated = false;
@@ -267,7 +274,7 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
         lobes_.resize(lobe_count_);
     }
     for (std::size_t i = 0; i < lobe_count_; ++i) {
-        lobes_[i].look_up(material, i, positions_, weights, parameters, weighed);
+        lobes_[i].look_up(material, i, positions_, weights, forms, weighed);
     }
     if (weighed && lobe_count_ > 1) {
         whole_.assign(positions_.size(), Rgb(0));

@@ -51,16 +51,19 @@ class ViewPositions {
 /// One lobe at all views of a ViewPositions. Memory is reused from one assignment to the next.
 class LobeViews {
   public:
-    /// The shape, whose parameter is meaningless if it varies.
+    /// The shape, whose form is meaningless if it varies.
     const LobeShape& shape() const { return lobe_->shape; }
     LobeShape shape(std::size_t view) const {
-        return lobe_->varies() ? with_parameter(lobe_->shape, double{parameters()[view]}) : lobe_->shape;
+        return lobe_->varies() ? with_form(lobe_->shape, form(view)) : lobe_->shape;
     }
     /// lobe_width() at each view.
     const float* widths() const { return widths_.data(); }
     /// lobe_parameter() at each view.
     const float* parameters() const { return anisotropic_ != nullptr ? azimuths_.data() : widths_.data(); }
+    /// Whether it is that of an anisotropic table, which has harmonics of its own.
     bool is_anisotropic() const { return anisotropic_ != nullptr; }
+    /// Whether each view has a shape of its own, and no harmonics.
+    bool is_stretched() const { return shlight::is_stretched(lobe_->shape); }
     const ViewPositions& positions() const { return *positions_; }
 
     /// Whether the cheapest method is chosen for each light; otherwise all lights take harmonics of one order.
@@ -85,6 +88,7 @@ class LobeViews {
 
     /// Permitted error as a share of the light's radiance, where it exceeds absolute_tolerance(); 0: none.
     double relative_tolerance() const { return relative_tolerance_; }
+    /// Precondition: not is_stretched().
     int largest_order() const { return orders().back(); }
     /// Error of the radiance at largest_order(); only if chooses().
     double error_of_largest_order(std::size_t view) const;
@@ -98,8 +102,9 @@ class LobeViews {
     friend class MaterialViews;
 
     void look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, const LobeWeights& weights,
-                 const LobeParameters& parameters, bool judged);
-    void find_parameters(const LobeParameters& parameters, const FitGrid* grid);
+                 const LobeForms& forms, bool judged);
+    const LobeForm& form(std::size_t view) const { return forms_.values[view * forms_.stride + index_]; }
+    void find_parameters(const FitGrid* grid);
     void interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
                      std::size_t stride);
     /// The orders of the fits; empty for a mirror and for Lambert.
@@ -119,6 +124,7 @@ class LobeViews {
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
     LobeWeights weights_{};
+    LobeForms forms_{};
     std::size_t index_ = 0;  // number of the lobe in its material
     double relative_tolerance_ = 0;
     std::vector<float> albedo_, tolerance_;
@@ -140,9 +146,9 @@ class LobeViews {
 
 class MaterialViews {
   public:
-    /// judged: whether within_tolerance() will be called. material and weights are kept by reference.
+    /// judged: whether within_tolerance() will be called. material, weights and forms are kept by reference.
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
-                const LobeParameters& parameters, bool judged);
+                const LobeForms& forms, bool judged);
 
     /// Chooses orders anew, so that each lobe's radiance under a light of this strength has an error of at most
     /// `error`, or of the material's tolerance times that radiance. Precondition: auto_order() of the material.

@@ -24,12 +24,12 @@ void QueryPoints::set(std::span<const Vec3d> points, std::span<const ShadingFram
     met_.resize(rays_.size());
     scene_->rays().intersect(rays_, met_);
     constexpr std::array kWhite = {Rgb(1)};
-    constexpr std::array kWidth = {1.0F};
+    constexpr std::array kForm = {LobeForm()};
     for (std::size_t i = 0; i < points.size(); ++i) {
         ShadingFrame frame = frames[i];
         frame.origin = points[i] - scene_->origin();
         hits_.add({frame.origin, frame.z, frame.z, error(frame.origin, 2 * i), 0}, Terminator(), frame, 1, kWhite,
-                  kWidth, 0, PathKind::direct, 0);
+                  kForm, 0, PathKind::direct, 0);
         hits_.end_pixel();
     }
 }

@@ -26,7 +26,7 @@ void check_surface_shader(const SurfaceShader& shader) {
     };
     for (const ShadedLobe& lobe : shader.lobes) {
         check("weight", lobe.weight, 3);
-        check("alpha", lobe.alpha, 1);
+        check("alpha", lobe.alpha, is_stretched(lobe.shape) ? 5 : 1);
         check("normal", lobe.normal, 3);
     }
     for (const ShadedRefraction& refraction : shader.refractions) {

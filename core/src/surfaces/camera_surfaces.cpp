@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "lobes/refraction.h"
 
@@ -308,7 +310,25 @@ LobeShape CameraSurfaces::laid_out(const Surface& surface, const LobeShape& shap
     }
     const ShadingFrame frame =
         shading_frame(surface.point.position, surface.point.shading_normal, surface.towards_viewer);
-    return with_parameter(shape, scene_->placed().azimuth(surface.hit, frame));
+    return with_azimuth(shape, scene_->placed().azimuth(surface.hit, frame));
+}
+
+LobeShape CameraSurfaces::varied(const Surface& surface, const ShadedLobe& lobe, const Vec3d& normal) const {
+    LobeForm form{width(surface, *lobe.alpha)};
+    if (is_stretched(lobe.shape)) {
+        form.across = width(surface, *lobe.alpha + 1);
+        const ShadingFrame frame = shading_frame(surface.point.position, normal, surface.towards_viewer);
+        const Vec3d tangent = vector(surface, *lobe.alpha + 2);
+        const double x = glm::dot(tangent, frame.x);
+        const double y = glm::dot(tangent, frame.y);
+        const double turn = std::isfinite(x) && std::isfinite(y) ? std::atan2(-y, x) : 0.0;
+        form.azimuth = static_cast<float>(turn);
+        if (form.width > form.across) {
+            std::swap(form.width, form.across);
+            form.azimuth -= static_cast<float>(std::numbers::pi / 2);
+        }
+    }
+    return with_form(lobe.shape, form);
 }
 
 void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const {
@@ -317,10 +337,9 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     const float cosine = view_cosine(smooth, surface.towards_viewer);
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
         for (const ShadedLobe& lobe : shader->lobes) {
-            const LobeShape shape = lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)})
-                                               : laid_out(surface, lobe.shape);
             const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
             const Vec3d own = known ? lobes.back().viewers_normal() : normal(surface, lobe.normal);
+            const LobeShape shape = lobe.alpha ? varied(surface, lobe, own) : laid_out(surface, lobe.shape);
             const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
             lobes.push_back({shape, lobe.translucent ? -own : own, weight * color(surface, lobe.weight),
                              lobe.several_bounces, lobe.translucent});
@@ -343,13 +362,13 @@ void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hit
         const SurfaceLobe& own = lobes_[first];
         const bool bumped = own.is_bumped();
         weights_.assign(lobes_.size(), Rgb(0));
-        parameters_.assign(lobes_.size(), 1);
+        forms_.assign(lobes_.size(), {});
         for (std::size_t i = first; i < lobes_.size(); ++i) {
             if (lobes_[i].normal == own.normal && lobes_[i].is_bumped() == bumped) {
                 taken_[i] = 1;
                 if (!is_mirror(lobes_[i].shape)) {
                     weights_[i] = surface.throughput * lobes_[i].weight;
-                    parameters_[i] = static_cast<float>(lobe_parameter(lobes_[i].shape));
+                    forms_[i] = lobe_form(lobes_[i].shape);
                 }
             }
         }
@@ -357,7 +376,7 @@ void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hit
             const ShadingFrame frame = frame_of(surface, own);
             const SurfacePoint point = own.lit_side(surface.point);
             hits.add(point, scene_->placed().terminator(surface.hit, point), frame,
-                     view_cosine(frame.z, view_of(surface, own)), weights_, parameters_, rays_[surface.ray].sample,
+                     view_cosine(frame.z, view_of(surface, own)), weights_, forms_, rays_[surface.ray].sample,
                      surface.kind, static_cast<std::uint32_t>(sink.in_apart(surface, surface.bounces)));
         }
     }

@@ -238,6 +238,8 @@ class CameraSurfaces {
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
     /// A shape as it lies on the surface, see PlacedMeshes::azimuth().
     LobeShape laid_out(const Surface& surface, const LobeShape& shape) const;
+    /// The shape of a shader's lobe whose width varies. normal: of the lobe.
+    LobeShape varied(const Surface& surface, const ShadedLobe& lobe, const Vec3d& normal) const;
     void add_hits(const Sink& sink, Hits& hits);
     void add_hit(const Surface& surface, const Sink& sink, Hits& hits);
     /// A path through an interface, or inside back from it.
@@ -271,7 +273,7 @@ class CameraSurfaces {
     std::vector<std::uint8_t> drawn_hits_;
     std::vector<std::uint8_t> taken_;  // by lobe: whether a hit or a path has it
     std::vector<Rgb> weights_;
-    std::vector<float> parameters_;
+    std::vector<LobeForm> forms_;
     std::vector<Rgb> recorded_;  // see StoredLight
 };
 

@@ -12,7 +12,7 @@ void Hits::clear() {
     material.clear();
     path.clear();
     lobe_weight.clear();
-    lobe_parameters.clear();
+    lobe_forms.clear();
     sample.clear();
     radiance.clear();
     in_apart.clear();
@@ -23,7 +23,7 @@ void Hits::clear() {
 }
 
 void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
-               float view_cosine, std::span<const Rgb> weights, std::span<const float> parameters,
+               float view_cosine, std::span<const Rgb> weights, std::span<const LobeForm> forms,
                std::uint32_t sample_index, PathKind path_kind, std::uint32_t number_in_apart) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
@@ -35,8 +35,8 @@ void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, 
     path.push_back(path_kind);
     lobe_weight.insert(lobe_weight.end(), weights.begin(), weights.end());
     lobe_weight.resize(size() * lobe_stride, Rgb(0));
-    lobe_parameters.insert(lobe_parameters.end(), parameters.begin(), parameters.end());
-    lobe_parameters.resize(size() * lobe_stride, 1);
+    lobe_forms.insert(lobe_forms.end(), forms.begin(), forms.end());
+    lobe_forms.resize(size() * lobe_stride);
     sample.push_back(sample_index);
     radiance.emplace_back(0);
     in_apart.push_back(number_in_apart);

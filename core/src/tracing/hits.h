@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/shading_frame.h"
+#include "shlight/lobe_shape.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 #include "tracing/light_bits.h"
@@ -34,7 +35,7 @@ struct Hits {
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
     std::vector<Rgb> lobe_weight;
-    std::vector<float> lobe_parameters;   ///< likewise lobe_parameter() of lobes that vary
+    std::vector<LobeForm> lobe_forms;     ///< likewise lobe_form() of lobes that vary
     std::vector<std::uint32_t> sample;    ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;            ///< reflected to the camera, summed up
     LightGroupBuffer apart;               ///< parts of that, and of what rays bring besides
@@ -47,9 +48,9 @@ struct Hits {
 
     std::size_t size() const { return frame.size(); }
     const Rgb& weight(std::size_t hit, std::size_t lobe) const { return lobe_weight[hit * lobe_stride + lobe]; }
-    /// The parameters of all lobes of a hit, where they vary.
-    std::span<const float> parameters(std::size_t hit) const {
-        return std::span(lobe_parameters).subspan(hit * lobe_stride, lobe_stride);
+    /// The forms of all lobes of a hit, where they vary.
+    std::span<const LobeForm> forms(std::size_t hit) const {
+        return std::span(lobe_forms).subspan(hit * lobe_stride, lobe_stride);
     }
     /// ω_o of a hit, in its shading frame.
     Vec3d view(std::size_t hit) const {
@@ -75,9 +76,9 @@ struct Hits {
             apart.add(in_apart[hit], apart.parts().kind(material[hit], lobe, path[hit]), group, light);
         }
     }
-    /// weights, parameters: of the material's lobes.
+    /// weights, forms: of the material's lobes.
     void add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
-             float view_cosine, std::span<const Rgb> weights, std::span<const float> parameters,
+             float view_cosine, std::span<const Rgb> weights, std::span<const LobeForm> forms,
              std::uint32_t sample_index, PathKind path_kind, std::uint32_t number_in_apart);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() {

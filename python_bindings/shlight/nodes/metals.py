@@ -13,12 +13,15 @@ from shlight.nodes.inputs import normal, towards_viewer
 from shlight.nodes.principled import (
     EDGE,
     Distribution,
+    aspect_stretch,
     bounces,
     checked_distribution,
     clamped,
+    mean_roughness,
     metal_lobes,
     mixed,
     reflecting_normal,
+    stretched,
 )
 from shlight.nodes.shader import Lobe, Shader
 from shlight.nodes.values import Color, Number, Varying, Vector, clamp, color, dot, maximum, number, vector
@@ -37,18 +40,24 @@ def metallic(
     *,
     several_bounces: bool = False,
     distribution: Distribution = "ggx",
+    anisotropy: Number = 0.0,
+    rotation: Number = 0.0,
+    tangent: Vector | None = None,
     at: Vector | None = None,
 ) -> Shader:
     """Blender's Metallic BSDF by its colours: head-on, and the tint at 82° (Kutz, Hašan & Edmondson 2021).
 
-    Arguments are clamped to 0 … 1; several_bounces: Multiscatter GGX. Raises ValueError naming an argument that is not
-    finite.
+    Arguments are clamped to 0 … 1; several_bounces: Multiscatter GGX; tangent: a world vector, needed where anisotropy
+    is not 0, which rotation turns about the normal, in turns. Raises ValueError naming an argument that is not finite.
     """
     several = _only_of_ggx(several_bounces, distribution)
     f0, tint = (clamped(color(c, name)) for c, name in ((base_color, "base_color"), (edge_tint, "edge_tint")))
     r = clamp(number(roughness, "roughness"))
-    lobes = metal_lobes(color(1.0), f0, tint, r, _normal(at), several_bounces=several, distribution=distribution)
-    return Shader(lobes)
+    n = _normal(at)
+    stretch = aspect_stretch(r, number(anisotropy, "anisotropy"), rotation, tangent, n)
+    r = mean_roughness(r, stretch)
+    lobes = metal_lobes(color(1.0), f0, tint, r, n, several_bounces=several, distribution=distribution)
+    return Shader(stretched(lobes, stretch))
 
 
 def conductor(
@@ -58,13 +67,16 @@ def conductor(
     *,
     several_bounces: bool = False,
     distribution: Distribution = "ggx",
+    anisotropy: Number = 0.0,
+    rotation: Number = 0.0,
+    tangent: Vector | None = None,
     at: Vector | None = None,
 ) -> Shader:
     """Blender's Metallic BSDF by the index of refraction n + ik of each colour: Fresnel's curve for a conductor.
 
     The curve is a sum of five that have lobes; of common metals it is off by 1e-3, and by 4e-3 of the worst n and k.
     ior, extinction: n and k, at least 0; several_bounces: Multiscatter GGX, with the mean of the curve that Cycles
-    estimates. Raises ValueError naming an argument that is not finite.
+    estimates; anisotropy, rotation, tangent: as of `metallic`. Raises ValueError naming an argument that is not finite.
     """
     several = _only_of_ggx(several_bounces, distribution)
     n, k = (
@@ -72,6 +84,8 @@ def conductor(
     )
     r = clamp(number(roughness, "roughness"))
     normal_of_lobes = _normal(at)
+    stretch = aspect_stretch(r, number(anisotropy, "anisotropy"), rotation, tangent, normal_of_lobes)
+    r = mean_roughness(r, stretch)
     own = color(1.0)
     if several:
         f0, edge = reflectance(1.0, n, k), reflectance(1.0 - EDGE, n, k)
@@ -83,7 +97,7 @@ def conductor(
     for factor, shares in zip(FACTORS, shares_of_known(), strict=True):
         share = sum((c * float(of) for c, of in zip(known, shares, strict=True)), start=vector(0.0))
         lobes.append(Lobe(distribution + factor, color(own * share), r * r, normal_of_lobes, several_bounces=several))
-    return Shader(tuple(lobes))
+    return Shader(stretched(tuple(lobes), stretch))
 
 
 def reflectance(cosine: float, n: Color, k: Color) -> Color:

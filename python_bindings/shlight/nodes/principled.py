@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, get_args
+from dataclasses import replace
+from typing import Literal, NamedTuple, get_args
 
 from shlight._arrays import checked_flag
 from shlight.nodes import energy
@@ -19,6 +20,7 @@ from shlight.nodes.values import (
     Vector,
     clamp,
     color,
+    cross,
     dot,
     length,
     maximum,
@@ -80,6 +82,58 @@ def reflecting_normal(n: Vector) -> Vector:
     height_squared = clamp(0.25 * (b + select(ix < 0.0, root, -root)) / a)
     turned = x * sqrt(1.0 - height_squared) + up * sqrt(height_squared)
     return Vector(*(select(reflected_height < least, t, own) for t, own in zip(turned, n, strict=True)))
+
+
+class Stretch(NamedTuple):
+    """Microfacets with two widths: alpha along and across a tangent of the surface, and that vector."""
+
+    along: Value
+    across: Value
+    tangent: Vector
+
+
+def turned_about(tangent: Vector | None, n: Vector, rotation: Number, anisotropy: str) -> Vector:
+    """A tangent, turned about a normal by so many turns. anisotropy: the argument that a tangent is needed for."""
+    if tangent is None:
+        raise ValueError(f"tangent must be given where {anisotropy} is not 0")
+    turns, t = number(rotation, "rotation"), vector(tangent, "tangent")
+    if turns.constant == 0.0:
+        return t
+    angle = turns * (2.0 * math.pi)
+    return t * operation("cosine", angle) + cross(n, t) * operation("sine", angle)
+
+
+def aspect_stretch(
+    roughness: Value,
+    share: Value,
+    rotation: Number,
+    tangent: Vector | None,
+    n: Vector,
+    anisotropy: str = "anisotropy",
+) -> Stretch | None:
+    """The widths of Burley 2012: of an anisotropy of 1 they are as 10 to 1, the larger one along the tangent.
+
+    None without anisotropy. anisotropy: the argument that `share` is given by.
+    """
+    if (own := clamp(share)).constant == 0.0:
+        return None
+    aspect = sqrt(1.0 - 0.9 * own)
+    square = roughness * roughness
+    along = turned_about(tangent, n, rotation, anisotropy)
+    return Stretch(clamp(square / aspect), clamp(square * aspect), along)
+
+
+def mean_roughness(roughness: Value, stretch: Stretch | None) -> Value:
+    """The roughness of the lobe that loses as much between microfacets."""
+    return roughness if stretch is None else sqrt(sqrt(stretch.along * stretch.across))
+
+
+def stretched(lobes: tuple[Lobe, ...], stretch: Stretch | None) -> tuple[Lobe, ...]:
+    """Lobes of microfacets with two widths; as they are if there is no stretch."""
+    if stretch is None:
+        return lobes
+    rest = (stretch.across, *stretch.tangent)
+    return tuple(replace(own, kind=f"stretched_{own.kind}", alpha=stretch.along, rest=rest) for own in lobes)
 
 
 def head_on(ior: Number) -> Value:
@@ -171,14 +225,13 @@ def metal_lobes(
     if several_bounces:
         cosine = clamp(dot(towards_viewer(), at), 1e-4)
         own = color(own * bounces(roughness, cosine, color(mixed(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
-    several = {"several_bounces": several_bounces}
-    lobes = (
-        Lobe(distribution, color(own * f0), alpha, at, **several),
-        Lobe(f"{distribution}_schlick", color(own * (1.0 - f0)), alpha, at, **several),
-    )
+    parts = {"": own * f0, "_schlick": own * (1.0 - f0), "_dip": -(own * dip)}
     if dip.constant == (0.0, 0.0, 0.0):
-        return lobes
-    return (*lobes, Lobe(f"{distribution}_dip", color(-(own * dip)), alpha, at, **several))
+        del parts["_dip"]
+    return tuple(
+        Lobe(distribution + factor, color(part), alpha, at, several_bounces=several_bounces)
+        for factor, part in parts.items()
+    )
 
 
 def glossy(
@@ -187,17 +240,33 @@ def glossy(
     *,
     several_bounces: bool = False,
     distribution: Distribution = "ggx",
+    anisotropy: Number = 0.0,
+    rotation: Number = 0.0,
+    tangent: Vector | None = None,
     at: Vector | None = None,
 ) -> Shader:
-    """Microfacets without Fresnel's factor: Blender's Glossy BSDF. several_bounces: of GGX alone."""
+    """Microfacets without Fresnel's factor: Blender's Glossy BSDF. several_bounces: of GGX alone.
+
+    anisotropy: clamped to -0.99 … 0.99; roughness² is multiplied with 1 - anisotropy along the tangent, a world vector,
+    and divided by it across it; of a negative one 1 + anisotropy the other way round. rotation: turns of the tangent
+    about the normal. Raises ValueError naming an argument.
+    """
     kind = checked_distribution(distribution)
+    share = clamp(number(anisotropy, "anisotropy"), -0.99, 0.99)
     c = Color(*(maximum(component, 0.0) for component in color(tint, "tint")))
     n = reflecting_normal(normal() if at is None else at)
     r = clamp(number(roughness, "roughness"))
+    stretch = None
+    if share.constant != 0.0:
+        less = 1.0 - abs(share)
+        ratio = select(share < 0.0, 1.0 / less, less)
+        along = turned_about(tangent, n, rotation, "anisotropy")
+        stretch = Stretch(clamp(r * r * ratio), clamp(r * r / ratio), along)
     weight = c
     if several_bounces:
-        weight = color(c * bounces(r, clamp(dot(towards_viewer(), n), 1e-4), clamped(c)))
-    return Shader((Lobe(kind, weight, r * r, n, several_bounces=several_bounces),))
+        cosine = clamp(dot(towards_viewer(), n), 1e-4)
+        weight = color(c * bounces(mean_roughness(r, stretch), cosine, clamped(c)))
+    return Shader(stretched((Lobe(kind, weight, r * r, n, several_bounces=several_bounces),), stretch))
 
 
 def _oren_nayar_rise(cosine: Value) -> Value:
@@ -304,13 +373,17 @@ def principled(
     transmission_weight: Number = 0.0,
     emission_color: Varying = (1.0, 1.0, 1.0),
     emission_strength: Number = 0.0,
+    anisotropic: Number = 0.0,
+    anisotropic_rotation: Number = 0.0,
+    tangent: Vector | None = None,
     several_bounces: bool = False,
     at: Vector | None = None,
 ) -> Shader:
-    """Blender's Principled BSDF, without anisotropy and thin film.
+    """Blender's Principled BSDF, without thin film.
 
     Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
-    its normal. Raises ValueError naming an argument that is not finite.
+    its normal; tangent: a world vector, needed where `anisotropic` is not 0. Raises ValueError naming an argument that
+    is not finite.
     """
     base = Color(*(maximum(component, 0.0) for component in color(base_color, "base_color")))
     f0_of_metal = clamped(base)
@@ -325,6 +398,9 @@ def principled(
     at = None if at is None else vector(at, "at")
     n = normal() if at is None else at
     glossy_normal = reflecting_normal(n)
+    share, turns = number(anisotropic, "anisotropic"), number(anisotropic_rotation, "anisotropic_rotation")
+    stretch = aspect_stretch(rough, share, turns, tangent, n, "anisotropic")
+    glossy_width = mean_roughness(rough, stretch)
 
     result = transparent(1.0 - opaque)
     weight = color(opaque)
@@ -354,7 +430,8 @@ def principled(
 
     if metal.constant != 0.0:
         edge = Color(*(minimum(component, 1.0) for component in tint))
-        result += Shader(metal_lobes(weight * metal, f0_of_metal, edge, rough, glossy_normal, several_bounces=several))
+        own_lobes = metal_lobes(weight * metal, f0_of_metal, edge, glossy_width, glossy_normal, several_bounces=several)
+        result += Shader(stretched(own_lobes, stretch))
         weight = color(weight * (1.0 - metal))
     through = clamp(number(transmission_weight, "transmission_weight"))
     if through.constant != 0.0:
@@ -375,8 +452,8 @@ def principled(
     index = maximum(index, 1.0 / index)
     if index.constant != 1.0:
         f0 = clamped(tint * facing)
-        lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, several_bounces=several)
-        result += Shader(lobes)
+        lobes, passed = _dielectric(weight, f0, index, glossy_width, glossy_normal, several_bounces=several)
+        result += Shader(stretched(lobes, stretch))
         weight = color(weight * passed)
     return result + oren_nayar(base, diffuse_width, at=at) * weight
 

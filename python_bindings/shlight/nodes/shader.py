@@ -40,13 +40,15 @@ class Lobe:
 
     # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; one lobe of a Bsdf; or microfacets,
     # "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel factor 1, and the same with "_schlick" or "_dielectric" for
-    # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks
+    # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks; with
+    # "stretched_" before it they have two widths: `rest` is alpha across the tangent, and the three of the tangent
     kind: str | _core.Bsdf
     weight: Color
-    alpha: Value | None = None  # roughness², of microfacets
+    alpha: Value | None = None  # roughness², of microfacets; along the tangent, if they have two
     normal: Vector | None = None  # None: the smooth one
     ior: float = 1.5  # of "ggx_dielectric"
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
+    rest: tuple[Value, ...] = ()  # what follows alpha of a shape with more numbers, in the order of `ShadedLobe::alpha`
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,7 @@ class Shader:
             return replace(of, weight=own_color(of.weight), alpha=alpha, normal=own_normal(of.normal))
 
         return Shader(
-            tuple(turned(lobe) for lobe in self.lobes),
+            tuple(replace(turned(lobe), rest=tuple(own(value) for value in lobe.rest)) for lobe in self.lobes),
             own_color(self.emission),
             own_color(self.transparency),
             {name: own(of) if isinstance(of, Value) else own_color(of) for name, of in self.aovs.items()},
@@ -179,7 +181,8 @@ class Shader:
             if normal is not None:
                 normal = normals.setdefault(id(normal), Vector(*on_ray(normal, Ray.CAMERA)))
             alpha = None if lobe.alpha is None else on_ray([lobe.alpha], Ray.CAMERA)[0]
-            found.append(replace(lobe, weight=weight, alpha=alpha, normal=normal))
+            rest = tuple(on_ray(lobe.rest, Ray.CAMERA))
+            found.append(replace(lobe, weight=weight, alpha=alpha, normal=normal, rest=rest))
         return found
 
     @cached_property
@@ -193,7 +196,7 @@ class Shader:
         normals: dict[int, int] = {}  # lobes with the same normal share the number of its result
         for lobe in self._lobes_for_camera():
             weight = builder.result(tuple(lobe.weight))
-            alpha = None if lobe.alpha is None else builder.result([lobe.alpha])
+            alpha = None if lobe.alpha is None else builder.result([lobe.alpha, *lobe.rest])
             if lobe.normal is not None and id(lobe.normal) not in normals:
                 normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
             normal = None if lobe.normal is None else normals[id(lobe.normal)]
@@ -233,7 +236,8 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     """The same with one lobe for each shape and normal."""
     found: dict[tuple[Any, ...], Lobe] = {}
     for lobe in lobes:
-        key = (lobe.kind, lobe.ior, id(lobe.normal), _identity(lobe.alpha), lobe.several_bounces)
+        numbers = [_identity(value) for value in (lobe.alpha, *lobe.rest)]
+        key = (lobe.kind, lobe.ior, id(lobe.normal), lobe.several_bounces, *numbers)
         same = found.get(key)
         found[key] = lobe if same is None else replace(lobe, weight=color(same.weight + lobe.weight))
     return tuple(found.values())
