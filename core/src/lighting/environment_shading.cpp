@@ -68,11 +68,6 @@ std::array<double, kMaxOrder> relative_errors(const float* lobe, double lobe_tai
     return errors;
 }
 
-double albedo_of(const MaterialLobes& material, std::size_t lobe, const LobeForm& form, double cos_theta_o) {
-    const Lobe& own = material.lobes()[lobe];
-    return own.varies() ? lobe_albedo(material.shape(lobe, form), cos_theta_o) : own.albedo(cos_theta_o);
-}
-
 /// Step of the logarithm of a varying width; between steps reflected light is interpolated linearly.
 constexpr float kWidthStep = 0.125F;
 constexpr std::size_t kWidthSteps = 96;  // down to the least width
@@ -343,7 +338,7 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<R
                 continue;
             }
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
-            const double albedo = albedo_of(material, lobe, form, points.cos_theta_o[point]);
+            const double albedo = material.albedo(lobe, form, points.cos_theta_o[point]);
             smooth[lobe * points.size() + point] =
                 static_cast<float>(albedo) * environment_->radiance(points.frame[point].z);
             report.order_counts[1] += points.hit_count(point);
@@ -400,7 +395,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
             Rgb& smooth = parts.smooth[at];
             if (choice.directions) {
                 const bool with_spots = sees_texels(shape);
-                smooth += static_cast<float>(albedo_of(materials_[material], lobe, form, cosine)) *
+                smooth += static_cast<float>(materials_[material].albedo(lobe, form, cosine)) *
                           (whole ? point.by_directions<kStretchedAcross>(shape, with_spots, true)
                                  : point.by_directions<kDirectionsAcross>(shape, with_spots, false));
             }

@@ -60,9 +60,10 @@ void TerminatorRays::find_densities(const Hits& hits, std::size_t hit, const Dra
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
         const Rgb color = glm::abs(hits.weight(hit, lobe));
         if (color != Rgb(0)) {
-            const LobeShape shape = material.shape(lobe, hits.forms(hit)[lobe]);
-            const double albedo = double{color.x + color.y + color.z} * lobe_albedo(shape, hits.cos_theta_o[hit]);
-            weighed_.weigh(shape, hits.frame[hit], hits.view(hit), true);
+            const LobeForm& form = hits.forms(hit)[lobe];
+            const double albedo =
+                double{color.x + color.y + color.z} * material.albedo(lobe, form, hits.cos_theta_o[hit]);
+            weighed_.weigh(material.shape(lobe, form), hits.frame[hit], hits.view(hit), true);
             for (std::size_t i = 0; i < density_.size(); ++i) {
                 density_[i] += albedo * weighed_.density(i);
             }

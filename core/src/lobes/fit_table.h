@@ -86,6 +86,8 @@ class FitGrid {
     };
     Neighbours neighbours(double alpha) const;
     /// Precondition: not a mirror.
+    double albedo(double alpha, double cos_theta_o) const;
+    /// Precondition: not a mirror.
     FitTable interpolated(double alpha) const;
 
   private:

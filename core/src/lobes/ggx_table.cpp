@@ -46,6 +46,17 @@ FitGrid::Neighbours FitGrid::neighbours(double alpha) const {
     return found;
 }
 
+double FitGrid::albedo(double alpha, double cos_theta_o) const {
+    const Neighbours between = neighbours(alpha);
+    double sum = 0;
+    for (std::size_t k = 0; k < kNeighbours; ++k) {
+        float albedo = 0;
+        between.tables[k]->look_up(cos_theta_o, FitTable::kAlbedo, {&albedo, 1});
+        sum += double{between.weights[k]} * double{albedo};
+    }
+    return sum;
+}
+
 FitTable FitGrid::interpolated(double alpha) const {
     const Neighbours between = neighbours(alpha);
     FitTable sum(orders_);

@@ -52,6 +52,15 @@ LobeWeights MaterialLobes::weights(std::span<const double> cos_theta_o, std::vec
     return {values, vary ? lobes_.size() : 0};
 }
 
+double MaterialLobes::albedo(std::size_t lobe, const LobeForm& form, double cos_theta_o) const {
+    if (!lobes_[lobe].varies()) {
+        return lobes_[lobe].albedo(cos_theta_o);
+    }
+    const bool is_fitted = grids_[lobe] != nullptr && form.width > 0;
+    return is_fitted ? grids_[lobe]->albedo(double{form.width}, cos_theta_o)
+                     : lobe_albedo(shape(lobe, form), cos_theta_o);
+}
+
 double MaterialLobes::narrowest(double cos_theta_o, std::span<const LobeForm> forms) const {
     double least = 1;
     for (std::size_t i = 0; i < lobes_.size(); ++i) {

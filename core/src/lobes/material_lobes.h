@@ -71,6 +71,8 @@ class MaterialLobes {
         const Lobe& own = lobes_[lobe];
         return own.varies() ? with_form(own.shape, form) : own.shape;
     }
+    /// Albedo of a lobe's shape, from the lobe's fits where it has some; `form` as above.
+    double albedo(std::size_t lobe, const LobeForm& form, double cos_theta_o) const;
 
   private:
     std::vector<Lobe> lobes_;

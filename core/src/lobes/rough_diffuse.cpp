@@ -5,9 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobes/boundary_integral.h"
 #include "lobes/rough_diffuse.h"
-#include "regions/boundary.h"
+#include "math/gauss_legendre.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
@@ -15,24 +14,49 @@ namespace {
 
 using std::numbers::pi;
 
-/// Absolute error of the albedo, which is integrated along the horizon.
-constexpr double kDiffuseAlbedoTolerance = 1e-5;
-
 /// Oren–Nayar's s/t: the product of both directions' tangential parts, divided by the larger cosine where positive.
 double agreement(const Vec3d& wi, const Vec3d& wo) {
     const double t = wi.x * wo.x + wi.y * wo.y;
     return t > 0 ? t / std::max(wi.z, wo.z) : t;
 }
 
-/// G₁ of GGX, 2 / (1 + √(1 + α² tan²θ)), with α² = tan²θ_o / 8 and θ the angle between light and ω_o.
-double bump_shadow(const Vec3d& wi, const Vec3d& wo) {
-    const double cosine = glm::dot(wi, wo);
+/// G₁ of GGX, 2 / (1 + √(1 + α² tan²θ)), with α² = tan²θ_o / 8 and θ the angle between light and ω_o, whose cosine is
+/// given.
+double bump_shadow(double cosine, double cos_theta_o) {
     if (!(cosine > 0)) {
         return 0;
     }
-    const double alpha2 = std::min(kBumpShare * (1 - wo.z * wo.z) / (wo.z * wo.z), 1.0);
+    const double z2 = cos_theta_o * cos_theta_o;
+    const double alpha2 = std::min(kBumpShare * (1 - z2) / z2, 1.0);
     const double square = cosine * cosine;
     return 2 * cosine / (cosine + std::sqrt(square + alpha2 * std::max(1 - square, 0.0)));
+}
+
+/// ∫ max(0, cosθ_i) dφ along the circle of directions at an angle to ω_o, whose cosine is given.
+double light_on_circle(double cosine, const Vec3d& wo) {
+    const double mean = cosine * wo.z, swing = std::sqrt(1 - cosine * cosine) * wo.x;
+    if (mean >= swing) {
+        return 2 * pi * mean;
+    }
+    const double end = std::acos(-mean / swing);
+    return 2 * (mean * end + swing * std::sin(end));
+}
+
+/// The bumped lobe's albedo to 1e-6, by circles around ω_o: those that cross the horizon, up to sinθ_o, and the others.
+double bumped_albedo(double cos_theta_o) {
+    const Vec3d wo(std::sqrt(std::max(0.0, 1 - cos_theta_o * cos_theta_o)), 0, cos_theta_o);
+    const auto reflected = [&](double cosine) { return bump_shadow(cosine, wo.z) * light_on_circle(cosine, wo); };
+    constexpr int kPoints = 12;
+    const GaussRule& rule = gauss_rule(kPoints);
+    double sum = 0;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        const double x = rule.nodes[i];
+        // The cubic evens out the roots at both ends.
+        const double crossing = wo.x * x * x * (3 - 2 * x);
+        sum += rule.weights[i] *
+               (6 * wo.x * x * (1 - x) * reflected(crossing) + (1 - wo.x) * reflected(wo.x + (1 - wo.x) * x));
+    }
+    return sum / pi;
 }
 
 }  // namespace
@@ -56,14 +80,22 @@ double DiffuseShape::value(const Vec3d& wi, const Vec3d& wo) const {
         case Diffuse::oren_nayar_loss:
             return wi.z * oren_nayar_loss(wi.z);
         case Diffuse::bumped:
-            return wi.z / pi * bump_shadow(wi, wo);
+            return wi.z / pi * bump_shadow(glm::dot(wi, wo), wo.z);
     }
     return 0;
 }
 
+/// The integral of Oren–Nayar's s/t is G of Fujii's model, and what G loses over all views π (6/5 - π/6).
 double DiffuseShape::albedo(double cos_theta_o) const {
-    const Arc<double> horizon = whole_circle({{0, 0, 1}, 0, 1});
-    return boundary_integral(*this, cos_theta_o, {&horizon, 1}, kDiffuseAlbedoTolerance).value;
+    switch (kind) {
+        case Diffuse::oren_nayar:
+            return pi + (pi / 2 - 2.0 / 3) - oren_nayar_loss(cos_theta_o);
+        case Diffuse::oren_nayar_loss:
+            return pi * (6.0 / 5 - pi / 6);
+        case Diffuse::bumped:
+            return bumped_albedo(cos_theta_o);
+    }
+    return 0;
 }
 
 Vec3d DiffuseShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
