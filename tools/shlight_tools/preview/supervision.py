@@ -28,6 +28,7 @@ class SceneRequest(Request):
     pixel_samples: int | None = None
     shadow_rays: int | None = None  # 0: no shadows
     max_bounces: int | None = None  # of both
+    render_seconds: float | None = None  # time limit of shlight; 0: none
 
 
 def run_worker(

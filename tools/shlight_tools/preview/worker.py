@@ -45,6 +45,8 @@ def prepare(scene: Any, request: SceneRequest) -> None:
     for name in ("order", "tolerance", "pixel_samples", "max_bounces"):
         if (value := getattr(request, name)) is not None:
             setattr(settings, name, value)
+    if request.render_seconds is not None:
+        settings.time_limit = request.render_seconds
     if request.shadow_rays is not None:
         settings.use_shadows = request.shadow_rays > 0
         settings.shadow_rays = max(request.shadow_rays, 1)

@@ -37,7 +37,7 @@ class Options:
 def parse(argv: list[str]) -> Options:
     """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
     values = vars(_parser().parse_args(argv))
-    names = ("size", "threads", "max_bounces", "pixel_samples", "samples", "reference_seconds")
+    names = ("size", "threads", "max_bounces", "pixel_samples", "samples", "render_seconds", "reference_seconds")
     render = {name: values.pop(name) for name in names}
     folder = values.pop("folder")
     out = values.pop("out") or Path("out") / "survey" / (folder.name or folder.resolve().name)
@@ -65,6 +65,13 @@ def _parser() -> argparse.ArgumentParser:
         default=120.0,
         metavar="S",
         help="time for a file, which is given up after it; 0: no limit (default: %(default)g)",
+    )
+    add(
+        "--render-seconds",
+        type=seconds,
+        default=40.0,
+        metavar="S",
+        help="time for shlight, whose picture then keeps the noise that it has; 0: no limit (default: %(default)g)",
     )
     add(
         "--samples", type=whole(1), dest="pixel_samples", metavar="N", help="camera rays of shlight per pixel, at least"
