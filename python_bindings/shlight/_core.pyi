@@ -90,6 +90,7 @@ def surface_shader(
     attribute_names: Sequence[str],
     aovs: Sequence[tuple[str, int, bool]],
     refractions: Sequence[tuple[int, int, int, int | None, bool]],
+    blocks_shadow_rays: bool,
 ) -> SurfaceShader: ...
 
 class LobeTable:
@@ -354,6 +355,8 @@ class Scene:
         turn_normals: bool = True,
         terminator_geometry_offset: float = 0.0,
         terminator_shading_offset: float = 0.0,
+        visible_to: Sequence[str] | None = None,
+        holdout: bool = False,
     ) -> SceneMesh: ...
     def add_curves(
         self,
@@ -377,6 +380,8 @@ class Scene:
         material_names: str | Sequence[str] | None = None,
         material_pass_indices: ArrayLike | None = None,
         terminator_shading_offset: float = 0.0,
+        visible_to: Sequence[str] | None = None,
+        holdout: bool = False,
     ) -> SceneMesh: ...
     def add_point_cloud(
         self,
@@ -397,6 +402,8 @@ class Scene:
         material_names: str | Sequence[str] | None = None,
         material_pass_indices: ArrayLike | None = None,
         terminator_shading_offset: float = 0.0,
+        visible_to: Sequence[str] | None = None,
+        holdout: bool = False,
     ) -> SceneMesh: ...
     def remove_lights(self) -> None: ...
     def add_sphere_light(

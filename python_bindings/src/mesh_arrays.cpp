@@ -2,10 +2,12 @@
 #include "mesh_arrays.h"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <glm/gtc/type_ptr.hpp>
@@ -259,6 +261,28 @@ std::vector<Emission> emission_from(const py::object& value) {
     return result;
 }
 
+constexpr std::array<std::pair<std::string_view, RayKind>, 5> kRayKinds = {
+    std::pair(std::string_view("camera"), kCameraRay),
+    {"diffuse", kDiffuseRay},
+    {"glossy", kGlossyRay},
+    {"transmission", kTransmissionRay},
+    {"shadow", kShadowRay}};
+
+/// The bits of kinds by their names.
+std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
+    std::uint32_t kinds = 0;
+    for (const py::handle& item : py::isinstance<py::str>(names) ? py::make_tuple(names) : py::tuple(names)) {
+        const std::string given = py::str(item).cast<std::string>();
+        const auto known = std::ranges::find(kRayKinds, given, [](const auto& own) { return own.first; });
+        if (known == kRayKinds.end()) {
+            throw std::invalid_argument(std::string(name) +
+                                        " must be of camera, diffuse, glossy, transmission and shadow, got " + given);
+        }
+        kinds |= known->second;
+    }
+    return kinds;
+}
+
 /// All but the triangles, curves or spheres, which the mesh has.
 Mesh completed(Mesh mesh, const SurfaceArguments& arguments, AttributeNames& names, SceneObject& scene) {
     add_attributes(mesh, names, "uvs", arguments.uvs);
@@ -274,6 +298,8 @@ Mesh completed(Mesh mesh, const SurfaceArguments& arguments, AttributeNames& nam
     mesh.turns_normals = flag_from("turn_normals", arguments.turn_normals);
     mesh.terminator = {real_from("terminator_geometry_offset", arguments.terminator_geometry_offset),
                        real_from("terminator_shading_offset", arguments.terminator_shading_offset)};
+    mesh.seen_by = arguments.visible_to.is_none() ? kAllRays : ray_kinds_from("visible_to", arguments.visible_to);
+    mesh.is_holdout = flag_from("holdout", arguments.holdout);
     return mesh;
 }
 

@@ -51,7 +51,7 @@ struct SurfaceArguments {
     pybind11::object uvs, colors, attributes, material_indices;
     MaterialArguments materials;
     PlaceArguments places;
-    pybind11::object turn_normals, terminator_geometry_offset, terminator_shading_offset;
+    pybind11::object turn_normals, terminator_geometry_offset, terminator_shading_offset, visible_to, holdout;
 };
 
 /// The arguments of Scene.add_mesh about its triangles.

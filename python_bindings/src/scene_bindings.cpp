@@ -49,6 +49,9 @@ turn_normals: whether normals that lie on the back of their triangle are turned 
 terminator_geometry_offset, terminator_shading_offset: 0 ... 1, against flat triangles that show at the edge of a smooth
     mesh's own shadow, as in Cycles. The first is the cosine of the light to a triangle below which shadow rays start
     on the smooth surface that its normals describe; the second lets the light end earlier.
+visible_to: names of the kinds of rays that meet it: "camera", "diffuse" and "glossy" from surfaces that reflect so,
+    "transmission" through glass, "shadow" towards lights; None: all. What it emits lights diffuse and glossy surfaces alike.
+holdout: the camera sees nothing there, and the picture is transparent.
 
 Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
@@ -65,7 +68,7 @@ attributes: likewise, of one to four numbers; shlight.nodes.attribute() reads th
 material_indices: (c,) integers, the material of each curve; None: 0 for all.
 emission: as of Scene.add_mesh. Curves are seen to shine; they light nothing but by bounces.
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
-    material_pass_indices, terminator_shading_offset: as of Scene.add_mesh. Radii are scaled by the cube root of a
+    material_pass_indices, terminator_shading_offset, visible_to, holdout: as of Scene.add_mesh. Radii are scaled by the cube root of a
     transform's determinant.
 
 Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
@@ -78,7 +81,7 @@ radii: [m], not negative: a number, or (n,).
 uvs, attributes, material_indices: as of Scene.add_curves, one for each sphere.
 emission: as of Scene.add_mesh. Spheres are seen to shine; they light nothing but by bounces.
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
-    material_pass_indices, terminator_shading_offset: as of Scene.add_mesh.
+    material_pass_indices, terminator_shading_offset, visible_to, holdout: as of Scene.add_mesh.
 
 Spheres are met from outside alone. Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
@@ -134,7 +137,8 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                     const py::object& group, const py::object& object_names, const py::object& asset_names,
                     const py::object& object_indices, const py::object& material_names,
                     const py::object& material_pass_indices, const py::object& turn_normals,
-                    const py::object& terminator_geometry_offset, const py::object& terminator_shading_offset) {
+                    const py::object& terminator_geometry_offset, const py::object& terminator_shading_offset,
+                    const py::object& visible_to, const py::object& holdout) {
     return add_shape(self, TriangleArguments{vertices, triangles, normals},
                      {uvs,
                       colors,
@@ -144,7 +148,9 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                       {transforms, object_values, object_names, asset_names, object_indices},
                       turn_normals,
                       terminator_geometry_offset,
-                      terminator_shading_offset});
+                      terminator_shading_offset,
+                      visible_to,
+                      holdout});
 }
 
 MeshHandle add_curves(const py::object& self, const py::object& points, const py::object& radii,
@@ -153,7 +159,8 @@ MeshHandle add_curves(const py::object& self, const py::object& points, const py
                       const py::object& emission, const py::object& material_indices, const py::object& transforms,
                       const py::object& object_values, const py::object& group, const py::object& object_names,
                       const py::object& asset_names, const py::object& object_indices, const py::object& material_names,
-                      const py::object& material_pass_indices, const py::object& terminator_shading_offset) {
+                      const py::object& material_pass_indices, const py::object& terminator_shading_offset,
+                      const py::object& visible_to, const py::object& holdout) {
     const SurfaceForm form = flag_from("ribbons", ribbons) ? SurfaceForm::ribbons : SurfaceForm::tubes;
     return add_shape(self, RoundArguments{form, points, radii, first, subdivisions},
                      {uvs,
@@ -164,7 +171,9 @@ MeshHandle add_curves(const py::object& self, const py::object& points, const py
                       {transforms, object_values, object_names, asset_names, object_indices},
                       py::bool_(true),
                       py::float_(0.0),
-                      terminator_shading_offset});
+                      terminator_shading_offset,
+                      visible_to,
+                      holdout});
 }
 
 MeshHandle add_point_cloud(const py::object& self, const py::object& points, const py::object& radii,
@@ -173,7 +182,8 @@ MeshHandle add_point_cloud(const py::object& self, const py::object& points, con
                            const py::object& object_values, const py::object& group, const py::object& object_names,
                            const py::object& asset_names, const py::object& object_indices,
                            const py::object& material_names, const py::object& material_pass_indices,
-                           const py::object& terminator_shading_offset) {
+                           const py::object& terminator_shading_offset, const py::object& visible_to,
+                           const py::object& holdout) {
     return add_shape(self, RoundArguments{SurfaceForm::spheres, points, radii, py::none(), py::none()},
                      {uvs,
                       py::none(),
@@ -183,7 +193,9 @@ MeshHandle add_point_cloud(const py::object& self, const py::object& points, con
                       {transforms, object_values, object_names, asset_names, object_indices},
                       py::bool_(true),
                       py::float_(0.0),
-                      terminator_shading_offset});
+                      terminator_shading_offset,
+                      visible_to,
+                      holdout});
 }
 
 void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission, const py::object& group,
@@ -342,20 +354,20 @@ void bind_scene(py::module_& m) {
              "object_values"_a = py::none(), "group"_a = py::none(), "object_names"_a = py::none(),
              "asset_names"_a = py::none(), "object_indices"_a = py::none(), "material_names"_a = py::none(),
              "material_pass_indices"_a = py::none(), "turn_normals"_a = true, "terminator_geometry_offset"_a = 0.0,
-             "terminator_shading_offset"_a = 0.0)
+             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false)
         .def("add_curves", &add_curves, kAddCurvesDoc, "points"_a, "radii"_a, "first"_a, py::kw_only(),
              "ribbons"_a = true, "subdivisions"_a = 5, "uvs"_a = py::none(), "attributes"_a = py::none(),
              "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
              "transforms"_a = py::none(), "object_values"_a = py::none(), "group"_a = py::none(),
              "object_names"_a = py::none(), "asset_names"_a = py::none(), "object_indices"_a = py::none(),
              "material_names"_a = py::none(), "material_pass_indices"_a = py::none(),
-             "terminator_shading_offset"_a = 0.0)
+             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false)
         .def("add_point_cloud", &add_point_cloud, kAddPointCloudDoc, "points"_a, "radii"_a, py::kw_only(),
              "uvs"_a = py::none(), "attributes"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(),
              "material_indices"_a = py::none(), "transforms"_a = py::none(), "object_values"_a = py::none(),
              "group"_a = py::none(), "object_names"_a = py::none(), "asset_names"_a = py::none(),
              "object_indices"_a = py::none(), "material_names"_a = py::none(), "material_pass_indices"_a = py::none(),
-             "terminator_shading_offset"_a = 0.0)
+             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false)
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),

@@ -157,9 +157,10 @@ LobeShape shape_of(const std::string& kind, double ior) {
 ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTuple>& lobes,
                          std::optional<std::uint32_t> emission, std::optional<std::uint32_t> transparency,
                          const ShaderProgram& shadow_program, std::vector<std::string> attribute_names,
-                         const std::vector<AovTuple>& aovs, const std::vector<RefractionTuple>& refractions) {
-    auto shader =
-        std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}});
+                         const std::vector<AovTuple>& aovs, const std::vector<RefractionTuple>& refractions,
+                         bool blocks_shadow_rays) {
+    auto shader = std::make_shared<SurfaceShader>(
+        SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}, blocks_shadow_rays});
     for (const auto& [kind, ior, weight, alpha, normal, several_bounces] : lobes) {
         if (const auto* bsdf = std::get_if<Bsdf>(&kind)) {
             const Lobe& own = bsdf->lobes().at(0);
@@ -267,7 +268,7 @@ void bind_shader(py::module_& m) {
         "steps"_a, "tables"_a, "images"_a, "results"_a);
     const py::class_<ShaderObject> shader(m, "SurfaceShader", without_constructor());
     m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
-          "attribute_names"_a, "aovs"_a, "refractions"_a);
+          "attribute_names"_a, "aovs"_a, "refractions"_a, "blocks_shadow_rays"_a);
 }
 
 }  // namespace shlight::python

@@ -193,7 +193,6 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     scene.world.use_nodes = False
     scene.world.color = (0.1, 0.1, 0.1)
     scene.world.cycles_visibility.diffuse = False
-    studio.box(name="Hidden").visible_camera = False
     studio.box(name="Catcher").is_shadow_catcher = True
     studio.link("Smoke", bpy.data.volumes.new("Smoke"))
     linked = studio.box(name="Linked")
@@ -203,7 +202,6 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
         "motion blur is not supported",
         "passes that are not supported: shadow_catcher, vector",
         "World 'Sky': hiding it from diffuse rays",
-        "Object 'Hidden': objects hidden from the camera",
         "Object 'Catcher': shadow catchers",
         "Object 'Smoke': volumes are not supported; left out",
         "Object 'Linked': light linking",

@@ -176,12 +176,6 @@ def test_ray_visibility(studio: Any, flag: str, carrier: str) -> None:
     assert studio.messages() == []
 
 
-def test_flags_of_what_shows_a_mesh_are_named(studio: Any) -> None:
-    stage(studio)
-    place_instance(studio, collection_of(studio, glowing(studio)), "turned").visible_diffuse = False
-    assert studio.messages() == ["Object 'Glow': objects hidden from diffuse rays are not supported; drawn as usual"]
-
-
 def test_light_and_shadow_linking_are_named(studio: Any) -> None:
     stage(studio)
     linked = lamp(studio, "AREA")

@@ -255,7 +255,8 @@ def test_unsupported_shaders_are_named(studio: Any, shader: str, inputs: dict[st
 
 def test_light_of_the_world_that_transparent_shadows_stop_is_named(studio: Any) -> None:
     studio.camera()
-    studio.world((0.3, 0.3, 0.3))
+    background, tree = studio.world(), studio.scene.world.node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeTexGradient").outputs["Color"], background.inputs["Color"])
     pane = studio.material("ShaderNodeBsdfTransparent", name="Pane")
     settings = pane if hasattr(pane, "use_transparent_shadow") else pane.cycles
     settings.use_transparent_shadow = False

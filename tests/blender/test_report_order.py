@@ -63,7 +63,7 @@ def test_what_can_change_more_is_named_first(studio: Any, first_is_large: bool) 
     """Objects and a material by what they cover, and lamps by their power; what lights everything comes first."""
     small, large = {"scale": (0.1, 0.1, 0.1)}, {"scale": (1.0, 1.0, 1.0)}
     first, second = (large, small) if first_is_large else (small, large)
-    studio.box(name="A", is_holdout=True, location=(-1, 0, 0), **first)
+    studio.box(name="A", is_shadow_catcher=True, location=(-1, 0, 0), **first)
     studio.box(name="B", is_shadow_catcher=True, location=(1, 0, 0), **second)
     for name, size, kind in (("C", first, "SubsurfaceScattering"), ("D", second, "BsdfHair")):
         made = studio.material(f"ShaderNode{kind}", name=name)

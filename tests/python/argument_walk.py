@@ -105,6 +105,8 @@ MESH = {
     "material_names": ["Matt"],
     "material_pass_indices": 2,
     "turn_normals": False,
+    "visible_to": ["camera", "shadow"],
+    "holdout": True,
     "terminator_geometry_offset": 0.1,
     "terminator_shading_offset": 0.1,
 }

@@ -175,12 +175,18 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
     shader, displacement = displaced(shader, material, output.inputs["Displacement"], reader)
     if not lets_light_through(material):
         graph = surroundings.depsgraph
-        if shader.transparency.constant != BLACK and graph is not None and graph.scene.world is not None:
-            text = "its Transparent Shadows are off; it stops all light of the world, part of which passes it in Cycles"
+        if shader.transparency.constant != BLACK and graph is not None and not _is_even(graph.scene.world):
+            text = "its Transparent Shadows are off; of the world's light another part passes it in Cycles"
             report.add(place, text, Effect.LIGHT)
-        passes = shader.transparency * (1.0 - nodes.rays.shadow_ray())
-        shader = replace(shader, transparency=nodes.values.color(passes))
+        shader = replace(shader, blocks_shadow_rays=True)
     return replace(with_light(shader, place, report), displacement=displacement)
+
+
+def _is_even(world: Any) -> bool:
+    """True if a world has the same light in all directions."""
+    output = world.node_tree.get_output_node("CYCLES") if world is not None and uses_nodes(world) else None
+    source = None if output is None else origin(output.inputs["Surface"]).node
+    return source is None or (source.type == "BACKGROUND" and not any(own.is_linked for own in source.inputs))
 
 
 def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:

@@ -34,6 +34,35 @@ MOST_SINGLE_FACES = 16
 MANY_EMITTERS = 200
 
 
+# Kinds of rays by the flags of objects that show them to these.
+RAY_KINDS = {
+    "visible_camera": "camera",
+    "visible_diffuse": "diffuse",
+    "visible_glossy": "glossy",
+    "visible_transmission": "transmission",
+    "visible_shadow": "shadow",
+}
+
+
+class Visibility(NamedTuple):
+    """The rays that see an object, as arguments of Scene.add_mesh."""
+
+    visible_to: tuple[str, ...]
+    holdout: bool
+
+    @staticmethod
+    def of(instance: Any, view_layer: Any) -> Visibility:
+        """Reads the flags of an instance and of its collections in a view layer."""
+        shown, instancer = instance.object, instance.parent if instance.is_instance else None
+        original = shown.original
+        hidden = {"camera"} if original.indirect_only_get(view_layer=view_layer) else set()
+        for flag, kind in RAY_KINDS.items():
+            if not getattr(shown, flag) or not (instancer is None or getattr(instancer, flag)):
+                hidden.add(kind)
+        kinds = tuple(kind for kind in RAY_KINDS.values() if kind not in hidden)
+        return Visibility(kinds, original.holdout_get(view_layer=view_layer))
+
+
 class Label(NamedTuple):
     """The names and numbers of an object in passes."""
 
@@ -111,7 +140,8 @@ class SceneMeshes:
         materials = slot_materials(mesh_object)
         own = (material and material.as_pointer() for material in materials)
         curves = curve_settings(self._surroundings.depsgraph.scene_eval) if kind in (HAIR, CURVES) else {}
-        settings = (terminator_offsets(mesh_object), kind, *curves.values())
+        visibility = Visibility.of(instance, self._surroundings.depsgraph.view_layer)
+        settings = (terminator_offsets(mesh_object), visibility, kind, *curves.values())
         key = (mesh_object.data.as_pointer(), self._group(mesh_object), *settings, *own)
         flat = _is_flat(to_world)
         if flat and kind:
@@ -123,9 +153,9 @@ class SceneMeshes:
         if key not in self._seen:
             kept = self._kept_mesh(key, instance, to_world, surfaces)
             self._seen[key] = kept or (
-                self._convert_strands(instance, kind, curves, surfaces)
+                self._convert_strands(instance, kind, curves, surfaces, visibility)
                 if kind
-                else self._convert(instance, to_world, surfaces, flat)
+                else self._convert(instance, to_world, surfaces, flat, visibility)
             )
         use = self._seen[key]
         use.transforms.append(np.eye(4) if flat else to_world)
@@ -163,7 +193,9 @@ class SceneMeshes:
     def _group(self, mesh_object: Any) -> str | None:
         return self._surroundings.passes.light_part(SURFACES, name_of(mesh_object, "lightgroup"))
 
-    def _convert(self, instance: Any, to_world: Matrix, surfaces: list[Surface], flat: bool) -> KeptMesh:
+    def _convert(
+        self, instance: Any, to_world: Matrix, surfaces: list[Surface], flat: bool, visibility: Visibility
+    ) -> KeptMesh:
         """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
         shown, place, report = instance.object, _place_of(instance.object), ExportReport()
         attributes = self._attributes(surfaces)
@@ -189,6 +221,9 @@ class SceneMeshes:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             geometry_offset, shading_offset = terminator_offsets(shown)
             made.faces = np.bincount(slots, minlength=len(surfaces))
+            if made.emits() and "shadow" not in visibility.visible_to:
+                text = "it shines and is hidden from shadow rays; its far sides light what is before it"
+                report.add(place, text, Effect.LIGHT)
             made.mesh = self._scene.add_mesh(
                 arrays.vertices,
                 arrays.triangles,
@@ -200,11 +235,14 @@ class SceneMeshes:
                 turn_normals=False,
                 terminator_geometry_offset=geometry_offset,
                 terminator_shading_offset=shading_offset,
+                **visibility._asdict(),
                 **_materials(made),
             )
         return made
 
-    def _convert_strands(self, instance: Any, kind: str, curves: dict[str, Any], surfaces: list[Surface]) -> KeptMesh:
+    def _convert_strands(
+        self, instance: Any, kind: str, curves: dict[str, Any], surfaces: list[Surface], visibility: Visibility
+    ) -> KeptMesh:
         """The same of strands of a kind."""
         shown, place, report = instance.object, _place_of(instance.object), ExportReport()
         attributes, depsgraph = self._attributes(surfaces), self._surroundings.depsgraph
@@ -229,6 +267,7 @@ class SceneMeshes:
             material_indices=slots,
             transforms=np.empty((0, 4, 4)),
             terminator_shading_offset=terminator_offsets(shown)[1],
+            **visibility._asdict(),
             **_materials(made),
         )
         return made

@@ -46,12 +46,7 @@ FILTERS = {"MESH": "use_solid", CURVES: "use_strand", "VOLUME": "use_volumes"}
 
 # Flags of an object with the value at which they change nothing.
 VISIBILITY = {
-    "visible_camera": (True, "objects hidden from the camera are not supported; drawn as usual"),
-    "visible_diffuse": (True, "objects hidden from diffuse rays are not supported; drawn as usual"),
-    "visible_glossy": (True, "objects hidden from glossy rays are not supported; drawn as usual"),
-    "visible_shadow": (True, "objects without shadow are not supported; drawn as usual"),
     "is_shadow_catcher": (False, "shadow catchers are not supported; drawn as usual"),
-    "is_holdout": (False, "holdouts are not supported; drawn as usual"),
 }
 
 

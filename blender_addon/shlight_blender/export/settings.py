@@ -94,7 +94,6 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     passes = ", ".join(_passes_not_written(view_layer))
     if passes:
         report.add(place, f"passes that are not supported: {passes}", Effect.SLIGHT)
-    _report_layer_collections(view_layer.layer_collection, report)
 
 
 def _passes_not_written(view_layer: Any) -> list[str]:
@@ -106,11 +105,3 @@ def _passes_not_written(view_layer: Any) -> list[str]:
     )
     passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
     return passes + list(DENOISING_LEFT_OUT if stores_denoising_data(view_layer) else ())
-
-
-def _report_layer_collections(layer_collection: Any, report: ExportReport) -> None:
-    for child in layer_collection.children:
-        if child.holdout or child.indirect_only:
-            text = "holdout and indirect only are not supported; drawn as usual"
-            report.add(f"Collection '{name_of(child)}'", text, Effect.THING)
-        _report_layer_collections(child, report)

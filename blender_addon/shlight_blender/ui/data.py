@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from ..compat import PASSES, Lamps, has_node_switch, shadow_switch, uses_nodes
+from ..compat import PASSES, has_node_switch, shadow_switch, uses_nodes
 from .base import Draw, panel, with_names_aside
 
 # Types of objects that have a surface or give light.
@@ -51,13 +51,14 @@ def measured(layout: Any, context: Any) -> None:
     shown=lambda context: context.object.type in DRAWN_TYPES or context.object.is_instancer,
 )
 def ray_visibility(layout: Any, context: Any) -> None:
-    """Kinds of rays that an object is hidden from; dim where that is not supported."""
+    """Kinds of rays that an object is hidden from."""
     shown = context.object
     is_lamp = shown.type == "LIGHT"
     column = layout.column()
-    column.active = is_lamp or (shown.is_instancer and Lamps.instancer_hides)
-    for kind in ("camera", "diffuse", "glossy", *([] if is_lamp else ["shadow"])):
+    for kind in ("camera", "diffuse", "glossy", *([] if is_lamp else ["transmission", "shadow"])):
         column.prop(shown, f"visible_{kind}", text=kind.title())
+    if not is_lamp:
+        layout.prop(shown, "is_holdout")
 
 
 @panel("SHLIGHT_LIGHT_PT_light", "Light", names_aside=False)

@@ -122,6 +122,8 @@ struct MeshUse {
     /// Normals on the other side of their triangle than the viewer are turned once more. Otherwise they stay there, and
     /// what lights them is on that side, as in Cycles.
     bool turns_normals = true;
+    std::uint32_t seen_by = kAllRays;    ///< the RayKind of rays that meet it; its emission lights lobes alike
+    bool is_holdout = false;             ///< the camera sees nothing there, neither it nor what is behind
     std::uint32_t group = 0;             ///< light group of its emission, see LightTraits::group
     std::vector<Label> object_labels;    ///< one per instance, or none
     std::vector<Label> material_labels;  ///< one per material, or none

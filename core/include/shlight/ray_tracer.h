@@ -18,12 +18,24 @@ namespace shlight {
 
 using Triangle = glm::vec<3, std::uint32_t, glm::defaultp>;
 
+/// Kinds of rays by what has sent them, as bits; a ray may be of several. Shadow rays are those that ask what lies
+/// between a point and a light.
+enum RayKind : std::uint32_t {
+    kCameraRay = 1,
+    kDiffuseRay = 2,
+    kGlossyRay = 4,
+    kTransmissionRay = 8,
+    kShadowRay = 16,
+    kAllRays = 31
+};
+
 /// The points origin + t · direction with t_min ≤ t ≤ t_max.
 struct Ray {
     Vec3f origin{0};
     float t_min = 0;
     Vec3f direction{0};
     float t_max = std::numeric_limits<float>::infinity();
+    std::uint32_t kinds = kShadowRay;  ///< it meets what is seen by any of them
 
     bool empty() const { return t_max < t_min; }
 };
@@ -85,6 +97,7 @@ class SurfaceTree {
 struct TracedInstance {
     std::shared_ptr<const SurfaceTree> tree;  ///< null: nothing
     glm::dmat4 to_world;                      ///< affine
+    std::uint32_t seen_by = kAllRays;         ///< the RayKind of rays that meet it
 };
 
 /// Immutable; any number of threads may trace at a time.

@@ -52,6 +52,7 @@ struct SurfaceShader {
     ShaderProgram shadow_program;               ///< its three results are the transparency for shadow rays
     std::vector<ShadedAov> aovs;
     std::vector<ShadedRefraction> refractions;
+    bool blocks_shadow_rays = false;  ///< those do not pass, and other rays do
 };
 
 /// The lobes of a Bsdf with colour 1; their weights are computed at each hit.

@@ -51,7 +51,7 @@ RecordRays::RecordRays(const SurfacePoint& surface, std::size_t across, std::uin
         const Vec3d way = sine * std::cos(azimuth) * x_ + sine * std::sin(azimuth) * y_ + cosine * z_;
         const double density = (kEven + 2 * (1 - kEven) * cosine) / (2 * std::numbers::pi);
         const bool leaves = glm::dot(way, surface.geometric_normal) > 0;
-        rays_.push_back({Vec3f(surface.off_surface()), 0, Vec3f(way), leaves ? Ray().t_max : -1});
+        rays_.push_back({Vec3f(surface.off_surface()), 0, Vec3f(way), leaves ? Ray().t_max : -1, kDiffuseRay});
         ways_.push_back(way);
         solid_angles_.push_back(static_cast<float>(1 / (density * width * width)));
     }

@@ -51,6 +51,7 @@ class ShadowRaySpawner {
         ray.direction.y = way.y + offset_.y;
         ray.direction.z = way.z + offset_.z;
         ray.t_max = kRayEnd;
+        ray.kinds = kShadowRay;
     }
 
     /// Without an end.

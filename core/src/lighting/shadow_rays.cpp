@@ -105,7 +105,7 @@ void ShadowRays::draw_set(std::size_t lit_index, std::size_t set, const LobeShap
     for (std::uint32_t first = 0; first < rays; first += kRaysAtOnce) {
         const std::uint32_t count = std::min(rays - first, kRaysAtOnce);
         sample_lobe_rays(shape, hits_->view(hit), square.u + first, square.v + first, count, directions);
-        target_->meet(directions, count, rays_);
+        target_->meet(directions, count, is_glossy(shape) ? kGlossyRay : kDiffuseRay, rays_);
     }
 }
 

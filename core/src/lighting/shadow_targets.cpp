@@ -122,7 +122,7 @@ bool LightTarget::may_meet(const LobeShape& lobe, const Vec3d& view) const {
     return is_glossy(lobe) && solid_angle() * largest_lobe_density(lobe, view) > kLeastShare;
 }
 
-void LightTarget::meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) {
+void LightTarget::meet(const RayVectors& directions, std::uint32_t count, RayKind /*kind*/, DrawnRays& rays) {
     if (rectangle_ != nullptr) {
         PointBuffer buffer;
         const LightPointArrays points = {directions.x, directions.y, directions.z, buffer.weight.data()};
@@ -228,26 +228,28 @@ void EnvironmentTarget::aim(const Hits& hits, std::size_t hit, std::size_t, bool
 }
 
 void EnvironmentTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
+    const std::uint32_t kinds = environment_->map() != nullptr ? kShadowRay : kDiffuseRay | kGlossyRay;
     for (std::uint32_t i = 0; i < count; ++i) {
         if (is_guided_) {
             const SkyGuide::Sample sample = guide_->sample(density_, u[i], v[i]);
-            push(frame_->to_local(sample.direction), sample.factor, rays);
+            push(frame_->to_local(sample.direction), sample.factor, kinds, rays);
         } else {
-            push(environment_->map()->sampler.sample({u[i], v[i]}) * to_map_, 0, rays);
+            push(environment_->map()->sampler.sample({u[i], v[i]}) * to_map_, 0, kinds, rays);
         }
     }
 }
 
-void EnvironmentTarget::meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) {
+void EnvironmentTarget::meet(const RayVectors& directions, std::uint32_t count, RayKind kind, DrawnRays& rays) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const Vec3d direction(directions.x[i], directions.y[i], directions.z[i]);
-        push(direction, is_guided_ ? guide_->factor(density_, frame_->to_world(direction)) : 0.0F, rays);
+        push(direction, is_guided_ ? guide_->factor(density_, frame_->to_world(direction)) : 0.0F, kind, rays);
     }
 }
 
-void EnvironmentTarget::push(const Vec3d& direction, float factor, DrawnRays& rays) const {
+void EnvironmentTarget::push(const Vec3d& direction, float factor, std::uint32_t kinds, DrawnRays& rays) const {
     if (direction.z > 0) {
-        const Ray ray = start_->along(direction);
+        Ray ray = start_->along(direction);
+        ray.kinds = kinds;
         rays.push({ray.direction, 0, 1, false}, ray);
         if (guide_ != nullptr) {
             rays.guided.push_back(factor);

@@ -76,8 +76,9 @@ class ShadowTarget {
     virtual void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) = 0;
     /// Whether rays in directions that a lobe reflects may meet it.
     virtual bool may_meet(const LobeShape& lobe, const Vec3d& view) const = 0;
-    /// Pushes the rays in directions of the shading frame, at most kRaysAtOnce, that meet it.
-    virtual void meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) = 0;
+    /// Pushes the rays in directions of the shading frame, at most kRaysAtOnce, that meet it. kind: of the lobe that
+    /// has drawn them.
+    virtual void meet(const RayVectors& directions, std::uint32_t count, RayKind kind, DrawnRays& rays) = 0;
     /// Finds what the rays see of it.
     virtual void trace(ShadowTracer& tracer, DrawnRays& rays) = 0;
     /// Radiance by which the rays' is multiplied.
@@ -99,7 +100,7 @@ class LightTarget : public ShadowTarget {
     bool draws() const override { return true; }
     void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) override;
     bool may_meet(const LobeShape& lobe, const Vec3d& view) const override;
-    void meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) override;
+    void meet(const RayVectors& directions, std::uint32_t count, RayKind kind, DrawnRays& rays) override;
     void trace(ShadowTracer& tracer, DrawnRays& rays) override;
     Rgb strength() const override;
     void find_radiance(std::span<const std::size_t>, DrawnRays&) override {}
@@ -129,7 +130,8 @@ class LightTarget : public ShadowTarget {
     std::optional<ShadowRaySpawner> start_;
 };
 
-/// The environment, which all hits see.
+/// The environment, which all hits see. As in Cycles, its rays that lobes draw meet what is seen by rays of the lobe's
+/// kind, and of an environment of one colour there are no others.
 class EnvironmentTarget : public ShadowTarget {
   public:
     /// guide: may be null.
@@ -143,14 +145,14 @@ class EnvironmentTarget : public ShadowTarget {
     bool draws() const override { return environment_->map() != nullptr; }
     void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) override;
     bool may_meet(const LobeShape&, const Vec3d&) const override { return true; }
-    void meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) override;
+    void meet(const RayVectors& directions, std::uint32_t count, RayKind kind, DrawnRays& rays) override;
     void trace(ShadowTracer& tracer, DrawnRays& rays) override;
     Rgb strength() const override;
     void find_radiance(std::span<const std::size_t> some, DrawnRays& rays) override;
     void guide(std::span<const std::size_t> some, DrawnRays& rays) const override;
 
   private:
-    void push(const Vec3d& direction, float factor, DrawnRays& rays) const;
+    void push(const Vec3d& direction, float factor, std::uint32_t kinds, DrawnRays& rays) const;
 
     const Environment* environment_;
     const SkyGuide* guide_;

@@ -226,7 +226,7 @@ void PointCoefficients::draw(ShadowTarget& target, std::uint32_t count, std::uin
             y[i] = sine * std::sin(azimuth);
             z[i] = u[first + i];
         }
-        target.meet({x.data(), y.data(), z.data()}, some, drawn_);
+        target.meet({x.data(), y.data(), z.data()}, some, kDiffuseRay, drawn_);
     }
 }
 

@@ -11,7 +11,7 @@
 namespace shlight {
 
 Ray query_ray(const CompiledScene& scene, const Vec3d& origin, const Vec3d& direction) {
-    return {Vec3f(origin - scene.origin()), 0, Vec3f(unit_direction(direction))};
+    return {Vec3f(origin - scene.origin()), 0, Vec3f(unit_direction(direction)), Ray().t_max, kAllRays};
 }
 
 void QueryPoints::set(std::span<const Vec3d> points, std::span<const ShadingFrame> frames) {

@@ -30,7 +30,7 @@ void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::size_
                                      std::vector<RayLight>& light) {
     rays_ = rays;
     const Sink sink = {light, hits.apart, rays_per_group, 1, settings_.max_bounces};
-    trace({0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}}, {}, sink, hits);
+    trace({0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}, kDiffuseRay}, {}, sink, hits);
 }
 
 void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink,
@@ -65,6 +65,7 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
 void CameraSurfaces::start(const Segment& segment, const Ray& part) {
     segments_.push_back(segment);
     parts_.push_back(part);
+    parts_.back().kinds = segment.seen_by;
 }
 
 /// The next surface of each path, or what lies behind all of them.
@@ -86,6 +87,10 @@ void CameraSurfaces::meet(const Sink& sink) {
         const double distance = glm::dot(point.position - Vec3d(segment.whole.origin), direction);
         if (segment.sees_lights()) {
             add_lamps(viewer, segment, parts_[i], distance, sink);
+        }
+        if (segment.source == RaySource::camera && scene_->placed().is_holdout(met_[i])) {
+            end_empty(segment, sink);
+            continue;
         }
         Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
         if (segment.is_broad && is_shaded(segment) && add_cell(end, sink)) {
@@ -120,8 +125,10 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
         sink.apart.add(sink.in_apart(segment, segment.bounces), LightKind::environment,
                        left * scene_->environment().radiance(direction));
     }
-    if (!is_mirrored) {
-        sink.light[segment.ray].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
+    if (!is_mirrored && background != nullptr) {
+        sink.light[segment.ray].opacity = 1;
+    } else if (!is_mirrored) {
+        end_empty(segment, sink);
     }
 }
 

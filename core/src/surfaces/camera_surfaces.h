@@ -104,8 +104,9 @@ class CameraSurfaces {
         std::uint32_t bounces;  ///< surfaces that have reflected the path
         std::uint32_t depth;    ///< surfaces that it has passed through since
         PathKind kind;
-        Rgb throughput;  ///< share of its light that reaches the camera
-        Ray whole;       ///< from where the camera ray, or the reflecting surface's, begins
+        Rgb throughput;                      ///< share of its light that reaches the camera
+        Ray whole;                           ///< from where the camera ray, or the reflecting surface's, begins
+        std::uint32_t seen_by = kCameraRay;  ///< the kinds of its rays
         std::uint32_t glossy = 0, transmissions = 0;  ///< of the bounces
         bool is_drawn = false;                        ///< by a lobe, or one before, from which directions are drawn
         bool is_broad = false;                        ///< its end need not be seen sharply
@@ -120,6 +121,9 @@ class CameraSurfaces {
                     kind_after(by),
                     share,
                     way,
+                    through                   ? kTransmissionRay
+                    : by == PathKind::diffuse ? kDiffuseRay
+                                              : kGlossyRay,
                     glossy + (by == PathKind::glossy ? 1 : 0),
                     transmissions + (through ? 1 : 0),
                     is_drawn};
@@ -199,6 +203,11 @@ class CameraSurfaces {
     void start(const Segment& segment, const Ray& part);
     void meet(const Sink& sink);
     void leave_scene(const Segment& segment, const Sink& sink);
+    /// The part of the picture that is left stays empty.
+    static void end_empty(const Segment& segment, const Sink& sink) {
+        const Rgb& left = segment.throughput;
+        sink.light[segment.ray].opacity = 1.0F - (left.x + left.y + left.z) / 3;
+    }
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
     /// Light that a segment meets. kind: see Segment::met.

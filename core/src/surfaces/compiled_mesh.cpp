@@ -206,6 +206,8 @@ void add_emissive_faces(const CompiledMesh& compiled, FaceSide side, const Stopp
     }
     LightTraits traits;
     traits.group = mesh.group;
+    traits.lights_diffuse = (mesh.seen_by & kDiffuseRay) != 0;
+    traits.lights_glossy = (mesh.seen_by & kGlossyRay) != 0;
     traits.is_surface = true;
     const bool two_sided = side == FaceSide::both;
     for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {

@@ -94,6 +94,8 @@ class PlacedMeshes {
     /// the texture coordinate u grows, or, on meshes without texture coordinates, around the mesh's own z-axis.
     double azimuth(const RayHit& hit, const ShadingFrame& frame) const;
     const Label& label(const RayHit& hit) const;
+    /// MeshUse::is_holdout of what was hit.
+    bool is_holdout(const RayHit& hit) const { return mesh_of(placements_[hit.instance]).is_holdout; }
     /// Whether the viewer sees the mesh's back.
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     /// The radiance that the material emits to the side of the viewer.

@@ -42,7 +42,8 @@ bool is_near(const Box& box, const Vec3d& origin) {
 
 /// The same triangles in the same places, opaque or not.
 bool meets_rays_alike(const std::shared_ptr<const CompiledMesh>& a, const std::shared_ptr<const CompiledMesh>& b) {
-    return a->opaque == b->opaque && a->transparent == b->transparent && a->mesh->transforms == b->mesh->transforms;
+    return a->opaque == b->opaque && a->transparent == b->transparent && a->mesh->transforms == b->mesh->transforms &&
+           a->mesh->seen_by == b->mesh->seen_by;
 }
 
 }  // namespace
@@ -112,8 +113,8 @@ void CompiledScene::build_rays(const CompiledScene* before, const Stopped& stopp
     for (const Placement& placement : placed_->placements()) {
         const CompiledMesh& mesh = *placed_->meshes()[placement.mesh];
         const glm::dmat4 to_world = placement.baked ? glm::dmat4(1) : placement.to_world;
-        opaque.push_back({mesh.opaque, to_world});
-        transparent.push_back({mesh.transparent, to_world});
+        opaque.push_back({mesh.opaque, to_world, mesh.mesh->seen_by});
+        transparent.push_back({mesh.transparent, to_world, mesh.mesh->seen_by});
     }
     rays_ = std::make_unique<const SceneRays>(std::move(opaque), std::move(transparent), *this, stopped);
 }
@@ -146,7 +147,8 @@ void CompiledScene::find(std::span<const Ray> rays, std::span<const RayHit> hits
         for (std::size_t k = 0; k < alike.size(); ++k) {
             for (int channel = 0; channel < 3; ++channel) {
                 const float share = results[static_cast<std::size_t>(channel) * alike.size() + k];
-                passed[numbers[k]][channel] = share > 0 ? share : 0.0F;
+                const bool stops = own.shader->blocks_shadow_rays && (rays[numbers[k]].kinds & kShadowRay) != 0;
+                passed[numbers[k]][channel] = share > 0 && !stops ? share : 0.0F;
             }
         }
     });

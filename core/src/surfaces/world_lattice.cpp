@@ -80,7 +80,7 @@ std::optional<SurfacePoint> WorldLattice::surface(const SurfacePoint& point, int
     start[(side.axis + 1) % 3] += (place.x - 0.5) * edge;
     start[(side.axis + 2) % 3] += (place.y - 0.5) * edge;
     start[side.axis] += (side.is_back ? -kDeep : kDeep) * edge;
-    Ray ray = {Vec3f(start), 0, Vec3f(0), static_cast<float>(2 * kDeep * edge)};
+    Ray ray = {Vec3f(start), 0, Vec3f(0), static_cast<float>(2 * kDeep * edge), kAllRays};
     ray.direction[side.axis] = side.is_back ? 1.0F : -1.0F;
     std::optional<SurfacePoint> found;
     RayHit hit;
@@ -99,7 +99,7 @@ std::optional<SurfacePoint> WorldLattice::surface(const SurfacePoint& point, int
     if (found) {
         const Vec3d from = point.off_surface() + kAbove * edge * point.geometric_normal;
         const Vec3d to = found->off_surface() + kAbove * edge * found->geometric_normal;
-        const Ray between = {Vec3f(from), 0, Vec3f(to - from), 1};
+        const Ray between = {Vec3f(from), 0, Vec3f(to - from), 1, kAllRays};
         scene_->rays().intersect({&between, 1}, {&hit, 1});
     }
     return found && hit.missed() ? found : std::nullopt;

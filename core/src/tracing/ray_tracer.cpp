@@ -109,15 +109,16 @@ Geometry round_geometry(RTCDevice device, const RoundParts& parts) {
     return geometry;
 }
 
-Geometry instance_geometry(RTCDevice device, RTCScene instanced, const glm::dmat4& to_world) {
+Geometry instance_geometry(RTCDevice device, RTCScene instanced, const TracedInstance& instance) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), instanced);
     std::array<float, 12> columns{};
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 3; ++row) {
-            columns[static_cast<std::size_t>(3 * column + row)] = static_cast<float>(to_world[column][row]);
+            columns[static_cast<std::size_t>(3 * column + row)] = static_cast<float>(instance.to_world[column][row]);
         }
     }
+    rtcSetGeometryMask(geometry.get(), instance.seen_by);
     rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
     rtcCommitGeometry(geometry.get());
     return geometry;
@@ -161,7 +162,7 @@ void trace_packets(RTCScene scene, std::span<const Ray> rays, std::span<std::uin
             packet.dir_y[i] = ray.direction.y;
             packet.dir_z[i] = ray.direction.z;
             packet.tfar[i] = ray.t_max;
-            packet.mask[i] = 0xFFFFFFFFU;
+            packet.mask[i] = ray.kinds;
         }
         embree::occluded(valid.data(), scene, &packet);
         // Embree marks a blocked ray by tfar = -∞.
@@ -210,7 +211,7 @@ class RayTracer::Impl {
         for (std::size_t i = 0; i < instances.size(); ++i) {
             if (instances[i].tree != nullptr) {
                 const Geometry instance =
-                    instance_geometry(device.get(), instances[i].tree->impl_->scene.get(), instances[i].to_world);
+                    instance_geometry(device.get(), instances[i].tree->impl_->scene.get(), instances[i]);
                 rtcAttachGeometryByID(scene.get(), instance.get(), static_cast<unsigned>(i));
             }
         }
@@ -241,7 +242,7 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
                      ray.direction.z,
                      0.0F,
                      ray.t_max,
-                     0xFFFFFFFFU,
+                     ray.kinds,
                      0U,
                      0U};
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;

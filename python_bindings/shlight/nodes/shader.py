@@ -83,6 +83,7 @@ class Shader:
     transparency: Color = field(default_factory=lambda: color(BLACK))  # share of light that goes on straight through
     aovs: Mapping[str, Value | Color] = field(default_factory=dict)  # see with_aovs
     refractions: tuple[Refraction, ...] = ()
+    blocks_shadow_rays: bool = False  # True: light of lamps does not pass where other rays do
 
     __array_ufunc__ = None  # an array of numpy times a shader is a shader
 
@@ -93,6 +94,7 @@ class Shader:
             color(self.transparency + other.transparency),
             {**self.aovs, **other.aovs},
             self.refractions + other.refractions,
+            self.blocks_shadow_rays or other.blocks_shadow_rays,
         )
 
     def __radd__(self, start: Literal[0]) -> Shader:  # what sum() begins with
@@ -102,7 +104,8 @@ class Shader:
         by = reflectance(factor, "factor")
         lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
         through = tuple(replace(own, weight=color(own.weight * by)) for own in self.refractions)
-        return Shader(lobes, color(self.emission * by), color(self.transparency * by), self.aovs, through)
+        emission, transparency = color(self.emission * by), color(self.transparency * by)
+        return Shader(lobes, emission, transparency, self.aovs, through, self.blocks_shadow_rays)
 
     __rmul__ = __mul__
 
@@ -229,7 +232,10 @@ class Shader:
     @cached_property
     def _compiled(self) -> _core.SurfaceShader:
         camera, shadow, surface, rest = self._listed
-        return _core.surface_shader(self._program, *surface, shadow.program(), camera.attributes, *rest)
+        attributes = camera.attributes
+        return _core.surface_shader(
+            self._program, *surface, shadow.program(), attributes, *rest, self.blocks_shadow_rays
+        )
 
 
 def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
