@@ -11,7 +11,7 @@ import math
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import bpy
 import numpy as np
@@ -54,7 +54,15 @@ def panorama_settings(lens: Any) -> Any:
 # The Principled BSDF has a specular layer over the diffuse base, or is a plain sum of both.
 PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 # Its inputs that are not supported, with the values at which they do nothing.
-PRINCIPLED_UNSUPPORTED = {"Thin Film Thickness": 0.0} if IS_BLENDER_4 else {"Subsurface": 0.0, "Clearcoat": 0.0}
+PRINCIPLED_UNSUPPORTED = {"Thin Film Thickness": 0.0} if IS_BLENDER_4 else {"Clearcoat": 0.0}
+# Methods of subsurface scattering by Blender's names.
+SUBSURFACE_METHODS: dict[str, Literal["burley", "random_walk", "random_walk_skin"]] = (
+    {"BURLEY": "burley", "RANDOM_WALK": "random_walk", "RANDOM_WALK_SKIN": "random_walk_skin"}
+    if IS_BLENDER_4
+    else {"BURLEY": "burley", "RANDOM_WALK_FIXED_RADIUS": "random_walk", "RANDOM_WALK": "random_walk_skin"}
+)
+# Light enters bodies from all sides, or is bent by their surface.
+SUBSURFACE_ENTRY_IS_DIFFUSE = not IS_BLENDER_4
 # The definition of a Voronoi Texture, as `nodes.voronoi` numbers them.
 CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5
 # A Magic Texture brings coordinates into one turn after it has scaled them, or before.

@@ -27,9 +27,9 @@ using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vec
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
 using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>, bool>;
 /// Kind of lobe, or a Bsdf of one lobe, which brings its shape and ViewWeight; ior, result indices of weight, alpha and
-/// normal, and ShadedLobe::several_bounces.
+/// normal, ShadedLobe::several_bounces, and ShadedSubsurface.
 using LobeTuple = std::tuple<std::variant<std::string, Bsdf>, double, std::uint32_t, std::optional<std::uint32_t>,
-                             std::optional<std::uint32_t>, bool>;
+                             std::optional<std::uint32_t>, bool, std::optional<std::pair<std::uint32_t, int>>>;
 /// name, number of the result, whether it is a colour
 using AovTuple = std::tuple<std::string, std::uint32_t, bool>;
 
@@ -161,14 +161,18 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
                          bool blocks_shadow_rays) {
     auto shader = std::make_shared<SurfaceShader>(
         SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}, blocks_shadow_rays});
-    for (const auto& [kind, ior, weight, alpha, normal, several_bounces] : lobes) {
+    for (const auto& [kind, ior, weight, alpha, normal, several_bounces, numbers] : lobes) {
+        std::optional<ShadedSubsurface> below;
+        if (numbers) {
+            below = {numbers->first, static_cast<SubsurfaceEntry>(numbers->second)};
+        }
         if (const auto* bsdf = std::get_if<Bsdf>(&kind)) {
             const Lobe& own = bsdf->lobes().at(0);
-            shader->lobes.push_back({own.shape, weight, {}, normal, false, false, own.weight, own.only_order});
+            shader->lobes.push_back({own.shape, weight, {}, normal, false, false, own.weight, own.only_order, below});
         } else {
             const auto& name = std::get<std::string>(kind);
-            shader->lobes.push_back(
-                {shape_of(name, ior), weight, alpha, normal, several_bounces, name == "translucent", nullptr, 0});
+            shader->lobes.push_back({shape_of(name, ior), weight, alpha, normal, several_bounces, name == "translucent",
+                                     nullptr, 0, below});
         }
     }
     std::vector<std::string> aov_names;

@@ -234,10 +234,8 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
     ("shader", "inputs", "named"),
     [
         ("ShaderNodeBsdfToon", {}, "Toon BSDF is not supported"),
-        ("ShaderNodeSubsurfaceScattering", {}, "Subsurface Scattering is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Thin_Film_Thickness": 300.0}, "'Thin Film Thickness' is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
-        ("ShaderNodeBsdfPrincipled", {"Subsurface_Weight": 0.5}, "'Subsurface Weight' is not supported"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),
     ],
 )

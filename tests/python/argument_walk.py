@@ -199,7 +199,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.oren_nayar": (Bsdf.oren_nayar, {"albedo": 0.5, "sigma": 0.5}),
     "Bsdf.principled": (
         Bsdf.principled,
-        {**dict.fromkeys(inspect.signature(Bsdf.principled).parameters, 0.5), "several_bounces": False},
+        {
+            **dict.fromkeys(inspect.signature(Bsdf.principled).parameters, 0.5),
+            "several_bounces": False,
+            "subsurface_method": "burley",
+        },
     ),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),
     "Bsdf.from_function": (

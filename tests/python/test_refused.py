@@ -40,6 +40,7 @@ OF_NODES: dict[str, tuple[Any, str, tuple[Any, ...]]] = {
     "fibres": (lambda roughness: nodes.microfibre(0.5, roughness), "roughness", ("high", NAN, INF)),
     "velvet": (lambda sigma: nodes.velvet(0.5, sigma), "sigma", ("high", NAN, INF)),
     "disney": (nodes.disney_sheen, "tint", NO_COLOR),
+    "body": (lambda radius: nodes.subsurface(0.5, radius), "radius", NO_COLOR[:1] + NO_COLOR[2:4]),
     "product": (nodes.lambert(0.5).__mul__, "factor", NO_COLOR),
     "lambert": (nodes.lambert, "albedo", ("red",)),
     "image": (nodes.image, "pixels", (np.ones((2, 2, 5)),)),

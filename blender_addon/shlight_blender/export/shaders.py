@@ -11,7 +11,12 @@ from shlight.nodes.principled import Distribution, aspect_stretch, stretched
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
-from ..compat import PRINCIPLED_IS_LAYERED, PRINCIPLED_UNSUPPORTED
+from ..compat import (
+    PRINCIPLED_IS_LAYERED,
+    PRINCIPLED_UNSUPPORTED,
+    SUBSURFACE_ENTRY_IS_DIFFUSE,
+    SUBSURFACE_METHODS,
+)
 from ..report import Effect
 from .displacement import DISPLACEMENT_NODES
 from .input_nodes import INPUT_NODES, around, fresnel_of
@@ -31,6 +36,7 @@ PRINCIPLED_NUMBERS = (
     "Metallic", "Roughness", "IOR", "Alpha", "Diffuse Roughness", "Specular IOR Level", "Coat Weight",
     "Coat Roughness", "Coat IOR", "Sheen Weight", "Sheen Roughness", "Transmission Weight", "Emission Strength",
     "Anisotropic", "Anisotropic Rotation",
+    "Subsurface Weight", "Subsurface Scale", "Subsurface IOR", "Subsurface Anisotropy",
 )  # fmt: skip
 PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Sheen Tint", "Emission Color")
 
@@ -49,13 +55,13 @@ def _tangent(inputs: NodeInputs) -> Vector:
 def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_hidden_behind("'Transmission Weight'")
-    if inputs.number("Subsurface Weight").constant != 0.0:
-        inputs.remark("'Subsurface Weight' is not supported; drawn as diffuse reflection")
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
         inputs.color("Base Color"),
         coat_normal=inputs.linked_vector("Coat Normal"),
+        subsurface_radius=inputs.vector("Subsurface Radius"),
+        subsurface_method=SUBSURFACE_METHODS[inputs.node.subsurface_method],
         several_bounces=inputs.node.distribution == "MULTI_GGX",
         tangent=_tangent(inputs),
         at=inputs.linked_vector("Normal"),
@@ -80,7 +86,7 @@ def _read_sum(inputs: NodeInputs) -> Shader:
         inputs.remark_hidden_behind("'Transmission'")
     through = transmission * (1.0 - metallic)
     diffuse = (1.0 - metallic) * (1.0 - transmission)
-    surface = nodes.disney_diffuse(base * diffuse, roughness, at=at)
+    surface = _diffuse_of_sum(inputs, base, roughness) * diffuse
     luminance = sum((c * w for c, w in zip(base, TINT_LUMINANCE, strict=True)), start=number(0.0))
     hue = Color(*(nodes.values.select(luminance > 0.0, c / luminance, 1.0) for c in base))
     sheen, sheen_tint = maximum(inputs.number("Sheen"), 0.0), clamp(inputs.number("Sheen Tint"))
@@ -101,6 +107,23 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha
 
 
+def _diffuse_of_sum(inputs: NodeInputs, base: Color, roughness: Value) -> Shader:
+    """The diffuse part of Blender 3.4's node, of which all comes from below the surface where 'Subsurface' is not 0."""
+    share, at = inputs.number("Subsurface"), inputs.linked_vector("Normal")
+    if share.constant == 0.0:
+        return nodes.disney_diffuse(base, roughness, at=at)
+    return nodes.disney_subsurface(
+        positive(base * (1.0 - share) + inputs.color("Subsurface Color") * share),
+        roughness,
+        inputs.vector("Subsurface Radius") * share,
+        method=SUBSURFACE_METHODS[inputs.node.subsurface_method],
+        ior=inputs.number("Subsurface IOR"),
+        anisotropy=inputs.number("Subsurface Anisotropy"),
+        diffuse_entry=SUBSURFACE_ENTRY_IS_DIFFUSE,
+        at=at,
+    )
+
+
 def _glass_of_sum(inputs: NodeInputs, base: Color, *, hue: Color, roughness: Value) -> Shader:
     """The part of Blender 3.4's node that light goes through: its front reflects as Fresnel's law has it at the normal.
 
@@ -115,6 +138,20 @@ def _glass_of_sum(inputs: NodeInputs, base: Color, *, hue: Color, roughness: Val
     width = roughness * roughness
     lobes = (Lobe("ggx", hue, width, n), *nodes.rising_lobes(1.0 - hue, maximum(ior, 1.0 / ior), width, n))
     return Shader(lobes) * front + Shader(refractions=(Refraction(color(base), inner * inner, ior, at),))
+
+
+def _subsurface(inputs: NodeInputs) -> Shader:
+    tint, own = positive(inputs.color("Color")), inputs.node.falloff
+    return nodes.subsurface(
+        tint,
+        inputs.vector("Radius") * inputs.number("Scale"),
+        method=SUBSURFACE_METHODS[own],
+        roughness=sqrt(inputs.number("Roughness")),
+        ior=inputs.number("IOR"),
+        anisotropy=inputs.number("Anisotropy"),
+        diffuse_entry=SUBSURFACE_ENTRY_IS_DIFFUSE,
+        at=inputs.linked_vector("Normal"),
+    )
 
 
 def _sheen(inputs: NodeInputs) -> Shader:
@@ -221,6 +258,7 @@ SHADERS: dict[str, ReadNode] = {
     "BSDF_REFRACTION": _glass,
     "BSDF_SHEEN": _sheen,
     "BSDF_VELVET": _sheen,
+    "SUBSURFACE_SCATTERING": _subsurface,
     "BSDF_TRANSLUCENT": lambda i: nodes.translucent(positive(i.color("Color")), i.linked_vector("Normal")),
     "BSDF_TRANSPARENT": lambda inputs: nodes.transparent(inputs.color("Color")),
     "EMISSION": emission,

@@ -14,6 +14,26 @@
 
 namespace shlight {
 
+/// This is how a path from the viewer gets below a surface.
+enum class SubsurfaceEntry : std::uint8_t {
+    refracted,  ///< by microfacets of GGX
+    skin,       ///< one half by microfacets of width 1, the other as from a diffuse surface
+    diffuse,
+    disk  ///< not at all: a probe finds places nearby, by the diffusion profile of Christensen & Burley 2015
+};
+
+/// Light that enters the mesh's body near by, and is scattered there to where the viewer's ray meets it. The lobe is
+/// then the diffuse reflection by which it enters; the lobe's own weight counts where paths have met a diffuse lobe
+/// before, and in channels without extinction.
+struct ShadedSubsurface {
+    /// The first of twelve results: extinction [1/m], albedo of single scattering, and gain, of which the weight is
+    /// multiplied with the last, three each; alpha and index of the interface, and the mean cosine of scattering.
+    /// With disk: the inverse of the profile's d in place of extinction, and no others.
+    std::uint32_t numbers;
+    SubsurfaceEntry entry;
+};
+inline constexpr std::uint32_t kSubsurfaceNumbers = 12;
+
 /// A lobe whose numbers are results of the program, given by index; colours and vectors by the first of three.
 struct ShadedLobe {
     LobeShape shape;
@@ -26,6 +46,7 @@ struct ShadedLobe {
     bool translucent = false;             ///< it reflects light from the other side than the viewer's, and is diffuse
     std::shared_ptr<const ViewWeight> view_weight;  ///< another factor; null: 1
     int only_order = 0;                             ///< see Lobe
+    std::optional<ShadedSubsurface> subsurface;     ///< the lobe is then Lambert's, or the one by which light enters
 };
 
 /// An interface to a transparent body that the mesh's front side bounds: light that bounces goes on through it, and

@@ -28,6 +28,9 @@ void check_surface_shader(const SurfaceShader& shader) {
         check("weight", lobe.weight, 3);
         check("alpha", lobe.alpha, is_stretched(lobe.shape) ? 5 : 1);
         check("normal", lobe.normal, 3);
+        if (lobe.subsurface) {
+            check("subsurface", lobe.subsurface->numbers, kSubsurfaceNumbers);
+        }
     }
     for (const ShadedRefraction& refraction : shader.refractions) {
         check("weight", refraction.weight, 3);

@@ -30,7 +30,9 @@ void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::size_
                                      std::vector<RayLight>& light) {
     rays_ = rays;
     const Sink sink = {light, hits.apart, rays_per_group, 1, settings_.max_bounces};
-    trace({0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}, kDiffuseRay}, {}, sink, hits);
+    Segment beginning = {0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}, kDiffuseRay};
+    beginning.diffused = true;
+    trace(beginning, {}, sink, hits);
 }
 
 void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink,
@@ -57,7 +59,14 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
         const std::size_t first = surfaces_.size();
         meet(sink);
         run_programs(neighbours, first);
+        const std::size_t last = surfaces_.size();
         pass_on(first, sink);
+        enter_bodies(first, last);
+        if (!walks_.empty() || !probes_.empty()) {
+            leave_bodies();
+            run_programs({}, last);
+            pass_on(last, sink);
+        }
     }
     add_hits(sink, hits);
 }
@@ -162,6 +171,9 @@ void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         material_of_[i] = surfaces_[i].point.material;
         const SurfaceShader* shader = scene_->materials()[material_of_[i]].shader.get();
+        if (surfaces_[i].exit_lobe && !shader->lobes[*surfaces_[i].exit_lobe].normal) {
+            continue;  // nothing of it is needed
+        }
         if (shader != nullptr && (is_shaded(surfaces_[i]) || shader->transparency)) {
             order_.push_back(static_cast<std::uint32_t>(i));
         }
@@ -226,6 +238,10 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
     const std::size_t last = surfaces_.size();
     for (std::size_t i = first; i < last; ++i) {
         const Surface& surface = surfaces_[i];
+        if (surface.exit_lobe) {
+            reflect(surface, sink);
+            continue;
+        }
         if (surface.source == RaySource::camera) {
             hit_count_ += surface.depth == 0 ? 1 : 0;
             sink.light[surface.ray].opacity = 1;
@@ -343,6 +359,13 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     const Vec3d& smooth = surface.point.shading_normal;
     const float cosine = view_cosine(smooth, surface.towards_viewer);
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
+        if (surface.exit_lobe) {
+            const Vec3d own = normal(surface, shader->lobes[*surface.exit_lobe].normal);
+            for (const ShadedLobe& lobe : shader->lobes) {
+                lobes.push_back({lobe.shape, own, Rgb(lobes.size() == *surface.exit_lobe ? 1.0F : 0.0F)});
+            }
+            return;
+        }
         for (const ShadedLobe& lobe : shader->lobes) {
             const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
             const Vec3d own = known ? lobes.back().viewers_normal() : normal(surface, lobe.normal);
@@ -358,9 +381,22 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     }
 }
 
+void CameraSurfaces::drop_entered(const Surface& surface) {
+    const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
+    if (shader == nullptr || surface.exit_lobe || surface.diffused) {
+        return;
+    }
+    for (std::size_t i = 0; i < lobes_.size(); ++i) {
+        if (const auto& own = shader->lobes[i].subsurface) {
+            lobes_[i].weight *= Rgb(glm::lessThanEqual(color(surface, own->numbers), Rgb(0)));
+        }
+    }
+}
+
 /// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
 void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hits) {
     find_lobes(surface, lobes_);
+    drop_entered(surface);
     taken_.assign(lobes_.size(), 0);
     for (std::size_t first = 0; first < lobes_.size(); ++first) {
         if (taken_[first] != 0) {

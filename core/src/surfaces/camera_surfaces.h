@@ -9,6 +9,7 @@
 // records near it (surfaces/light_records.h), or by a path where there are none.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,6 +20,7 @@
 #include "shlight/types.h"
 #include "surfaces/placed_meshes.h"
 #include "surfaces/stored_light.h"
+#include "surfaces/subsurface_walks.h"
 #include "surfaces/visible_lamps.h"
 #include "tracing/hits.h"
 
@@ -110,6 +112,8 @@ class CameraSurfaces {
         std::uint32_t glossy = 0, transmissions = 0;  ///< of the bounces
         bool is_drawn = false;                        ///< by a lobe, or one before, from which directions are drawn
         bool is_broad = false;                        ///< its end need not be seen sharply
+        bool diffused = false;                        ///< by a surface before
+        std::optional<std::uint32_t> exit_lobe{};     ///< it ends where light enters a body for this lobe
 
         bool sees_lights() const { return source != RaySource::scattered; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -126,7 +130,9 @@ class CameraSurfaces {
                                               : kGlossyRay,
                     glossy + (by == PathKind::glossy ? 1 : 0),
                     transmissions + (through ? 1 : 0),
-                    is_drawn};
+                    is_drawn,
+                    false,
+                    diffused || by == PathKind::diffuse};
         }
         Segment drawn(bool rough, bool broad) const {
             Segment own = *this;
@@ -224,6 +230,32 @@ class CameraSurfaces {
                segment.transmissions <= settings_.transmission_bounces &&
                segment.depth <= settings_.transparent_bounces;
     }
+    /// A ray through a body, of which all hits are places near a surface.
+    struct SubsurfaceProbe {
+        std::size_t surface;
+        std::uint32_t lobe;
+        std::size_t axis;
+        std::array<Vec3d, 3> axes;
+        Ray ray;
+        Rgb inverse, throughput;
+        double radius;  ///< from the axis through the surface
+    };
+    /// Begins walks below surfaces, first … last - 1, that light comes out of.
+    void enter_bodies(std::size_t first, std::size_t last);
+    void enter_body(std::size_t number, std::uint32_t lobe);
+    /// The direction below a surface, in the frame of a lobe.
+    Vec3d way_below(const Surface& surface, const ShadedSubsurface& own, const ShadingFrame& frame,
+                    glm::dvec2 point) const;
+    /// Looks for places near a surface where light enters. inverse: see ShadedSubsurface.
+    void probe_body(std::size_t number, std::uint32_t lobe, const Rgb& inverse, const Rgb& throughput,
+                    glm::dvec2 point);
+    /// Adds the surfaces that walks and probes end at.
+    void leave_bodies();
+    void leave_probe(const SubsurfaceProbe& probe, const RayHit& hit);
+    /// way: of the path, out of the body.
+    void leave_body(std::size_t number, std::uint32_t lobe, const RayHit& hit, const Vec3d& way, const Rgb& throughput);
+    /// Takes what enters below a surface out of lobes_, of which the places where it does have hits of their own.
+    void drop_entered(const Surface& surface);
     /// The paths that go on from a surface by its lobes.
     void reflect(const Surface& surface, const Sink& sink);
     void reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
@@ -275,6 +307,8 @@ class CameraSurfaces {
     std::vector<SurfaceLobe> lobes_;
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
+    std::vector<SubsurfaceWalk> walks_;
+    std::vector<SubsurfaceProbe> probes_;
     std::vector<std::uint32_t> order_, material_of_;
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;

@@ -46,7 +46,7 @@ constexpr std::uint32_t kRefractionSeed = 0x80000000U;
 
 void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
-        shader != nullptr && settings_.max_bounces > 0) {
+        shader != nullptr && settings_.max_bounces > 0 && !surface.exit_lobe) {
         for (std::uint32_t i = 0; i < shader->refractions.size(); ++i) {
             refract(surface, shader->refractions[i], i);
         }
@@ -57,6 +57,7 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
         return;
     }
     find_lobes(surface, lobes_);
+    drop_entered(surface);
     taken_.assign(lobes_.size(), 0);
     for (std::size_t i = 0; i < lobes_.size(); ++i) {
         const SurfaceLobe& lobe = lobes_[i];

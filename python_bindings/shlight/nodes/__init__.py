@@ -7,7 +7,7 @@ What these functions return stands where a constant stood: `Bsdf.lambert(nodes.i
 from shlight.nodes import colors, inputs, mathematics, rays, values
 from shlight.nodes.cells import Gabor, Voronoi, gabor, voronoi
 from shlight.nodes.colors import mix_color
-from shlight.nodes.disney import disney_diffuse, disney_sheen
+from shlight.nodes.disney import disney_diffuse, disney_sheen, disney_subsurface
 from shlight.nodes.fabrics import microfibre, velvet
 from shlight.nodes.inputs import (
     attribute,
@@ -37,6 +37,7 @@ from shlight.nodes.principled import (
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, scaled, translucent, transparent
 from shlight.nodes.skies import Sky, preetham
 from shlight.nodes.spectra import blackbody, wavelength
+from shlight.nodes.subsurface import subsurface
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector, clamp, equal, maximum, minimum, select, sqrt
 
@@ -60,6 +61,7 @@ __all__ = [
     "conductor",
     "disney_diffuse",
     "disney_sheen",
+    "disney_subsurface",
     "emission",
     "equal",
     "gabor",
@@ -96,6 +98,7 @@ __all__ = [
     "scaled",
     "select",
     "sqrt",
+    "subsurface",
     "towards_viewer",
     "translucent",
     "transparent",

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shlight import _core, _tables
 from shlight.nodes.shader import Lobe, Shader
+from shlight.nodes.subsurface import subsurface
 from shlight.nodes.values import Number, Varying, Vector, clamp, color, number, reflectance, vector
 
 Doubles = NDArray[np.float64]
@@ -31,6 +34,21 @@ def disney_diffuse(albedo: Varying, roughness: Number, *, at: Vector | None = No
     return Shader(
         tuple(Lobe(_diffuse_lobe(i), color(rho * share), normal=n) for i, share in enumerate((number(1.0), r, r * r)))
     )
+
+
+def disney_subsurface(
+    albedo: Varying, roughness: Number, radius: Varying, *, at: Vector | None = None, **below: Any
+) -> Shader:
+    """The same with its first part scattered below the surface, which the other two lie above.
+
+    Of Fresnel's factors that part has the light's where it enters, as in Blender 3.4. radius, below: as of
+    `nodes.subsurface`. Raises ValueError naming an argument.
+    """
+    body = subsurface(albedo, radius, at=at, **below).lobes
+    entry = tuple(replace(lobe, kind=_entry_lobe()) for lobe in body if lobe.below is not None)
+    if not entry:
+        return disney_diffuse(albedo, roughness, at=at)
+    return Shader(entry + disney_diffuse(albedo, roughness, at=at).lobes[1:])
 
 
 def disney_sheen(tint: Varying, *, at: Vector | None = None) -> Shader:
@@ -60,6 +78,13 @@ def _diffuse_lobe(power: int) -> _core.Bsdf:
         across * (light + view - light * view),
         across**2 * light * view,
     )[power]
+    return _tables.from_table(f[:, None] / math.pi, theta_i, [0.0], theta_o, phi)
+
+
+@lru_cache(maxsize=1)
+def _entry_lobe() -> _core.Bsdf:
+    theta_i, theta_o, phi, across = _axes()
+    f = (1.0 - 0.5 * (1.0 - np.cos(theta_i[:, None, None])) ** 5) * np.ones_like(across)
     return _tables.from_table(f[:, None] / math.pi, theta_i, [0.0], theta_o, phi)
 
 

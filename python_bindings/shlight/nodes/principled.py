@@ -12,6 +12,7 @@ from shlight.nodes import energy
 from shlight.nodes.fabrics import microfibre, microfibre_albedo
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
+from shlight.nodes.subsurface import SubsurfaceMethod, checked_method, subsurface
 from shlight.nodes.values import (
     Color,
     Number,
@@ -376,6 +377,12 @@ def principled(
     anisotropic: Number = 0.0,
     anisotropic_rotation: Number = 0.0,
     tangent: Vector | None = None,
+    subsurface_weight: Number = 0.0,
+    subsurface_radius: Varying = (1.0, 0.2, 0.1),
+    subsurface_scale: Number = 0.05,
+    subsurface_ior: Number = 1.4,
+    subsurface_anisotropy: Number = 0.0,
+    subsurface_method: SubsurfaceMethod = "random_walk",
     several_bounces: bool = False,
     at: Vector | None = None,
 ) -> Shader:
@@ -395,6 +402,13 @@ def principled(
     several = checked_flag("several_bounces", several_bounces)
     diffuse_width = number(diffuse_roughness, "diffuse_roughness")
     coat_width, coat_color = number(coat_roughness, "coat_roughness"), color(coat_tint, "coat_tint")
+    below = clamp(number(subsurface_weight, "subsurface_weight"))
+    far = color(subsurface_radius, "subsurface_radius") * number(subsurface_scale, "subsurface_scale")
+    method, skin_index = (
+        checked_method("subsurface_method", subsurface_method),
+        number(subsurface_ior, "subsurface_ior"),
+    )
+    forward = number(subsurface_anisotropy, "subsurface_anisotropy")
     at = None if at is None else vector(at, "at")
     n = normal() if at is None else at
     glossy_normal = reflecting_normal(n)
@@ -455,6 +469,11 @@ def principled(
         lobes, passed = _dielectric(weight, f0, index, glossy_width, glossy_normal, several_bounces=several)
         result += Shader(stretched(lobes, stretch))
         weight = color(weight * passed)
+    if below.constant != 0.0:
+        bent = skin_index if method == "random_walk_skin" else index
+        body = subsurface(f0_of_metal, far, method=method, roughness=rough, ior=bent, anisotropy=forward, at=at)
+        result += body * (weight * below)
+        weight = color(weight * (1.0 - below))
     return result + oren_nayar(base, diffuse_width, at=at) * weight
 
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 from shlight import _core
 from shlight._arrays import checked_number
@@ -35,6 +35,15 @@ BUMP = math.radians(6.0)
 
 
 @dataclass(frozen=True)
+class Subsurface:
+    """This is how light gets below a surface and is scattered there until it comes out."""
+
+    # extinction [1/m], albedo of single scattering, and gain, three each; alpha, index, and the mean cosine
+    numbers: tuple[Value, ...]
+    entry: int  # the core's SubsurfaceEntry
+
+
+@dataclass(frozen=True)
 class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
@@ -49,6 +58,7 @@ class Lobe:
     ior: float = 1.5  # of "ggx_dielectric"
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
     rest: tuple[Value, ...] = ()  # what follows alpha of a shape with more numbers, in the order of `ShadedLobe::alpha`
+    below: Subsurface | None = None  # light comes out of the body, and this is by what it enters
 
 
 @dataclass(frozen=True)
@@ -65,12 +75,15 @@ class Refraction:
     reflects: bool = True  # False: all light goes through that can
 
 
+_ListedLobe: TypeAlias = tuple[str | _core.Bsdf, float, int, int | None, int | None, bool, tuple[int, int] | None]
+
+
 class _Listed(NamedTuple):
     """The steps of a material, and which of their results are what: arguments of `_core.surface_shader`."""
 
     camera: ProgramBuilder
     shadow: ProgramBuilder
-    surface: tuple[list[tuple[str | _core.Bsdf, float, int, int | None, int | None, bool]], int | None, int | None]
+    surface: tuple[list[_ListedLobe], int | None, int | None]
     rest: tuple[list[tuple[str, int, bool]], list[tuple[int, int, int, int | None, bool]]]
 
 
@@ -136,7 +149,11 @@ class Shader:
 
         def turned(of: Any) -> Any:
             alpha = None if of.alpha is None else own(of.alpha)
-            return replace(of, weight=own_color(of.weight), alpha=alpha, normal=own_normal(of.normal))
+            made = replace(of, weight=own_color(of.weight), alpha=alpha, normal=own_normal(of.normal))
+            below = getattr(of, "below", None)
+            if below is None:
+                return made
+            return replace(made, below=replace(below, numbers=tuple(own(value) for value in below.numbers)))
 
         return Shader(
             tuple(replace(turned(lobe), rest=tuple(own(value) for value in lobe.rest)) for lobe in self.lobes),
@@ -144,6 +161,7 @@ class Shader:
             own_color(self.transparency),
             {name: own(of) if isinstance(of, Value) else own_color(of) for name, of in self.aovs.items()},
             tuple(replace(turned(of), ior=own(of.ior)) for of in self.refractions),
+            self.blocks_shadow_rays,
         )
 
     def compiled(self) -> _core.SurfaceShader:
@@ -185,7 +203,10 @@ class Shader:
                 normal = normals.setdefault(id(normal), Vector(*on_ray(normal, Ray.CAMERA)))
             alpha = None if lobe.alpha is None else on_ray([lobe.alpha], Ray.CAMERA)[0]
             rest = tuple(on_ray(lobe.rest, Ray.CAMERA))
-            found.append(replace(lobe, weight=weight, alpha=alpha, normal=normal, rest=rest))
+            below = lobe.below
+            if below is not None:
+                below = replace(below, numbers=tuple(on_ray(below.numbers, Ray.CAMERA)))
+            found.append(replace(lobe, weight=weight, alpha=alpha, normal=normal, rest=rest, below=below))
         return found
 
     @cached_property
@@ -203,7 +224,8 @@ class Shader:
             if lobe.normal is not None and id(lobe.normal) not in normals:
                 normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
             normal = None if lobe.normal is None else normals[id(lobe.normal)]
-            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal, lobe.several_bounces))
+            below = None if lobe.below is None else (builder.result(lobe.below.numbers), lobe.below.entry)
+            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal, lobe.several_bounces, below))
         glow, seen = (
             color_on_ray(own, Ray.CAMERA, filtered=self._is_filtered) for own in (self.emission, self.transparency)
         )
@@ -243,7 +265,7 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     found: dict[tuple[Any, ...], Lobe] = {}
     for lobe in lobes:
         numbers = [_identity(value) for value in (lobe.alpha, *lobe.rest)]
-        key = (lobe.kind, lobe.ior, id(lobe.normal), lobe.several_bounces, *numbers)
+        key = (lobe.kind, lobe.ior, id(lobe.normal), lobe.several_bounces, id(lobe.below), *numbers)
         same = found.get(key)
         found[key] = lobe if same is None else replace(lobe, weight=color(same.weight + lobe.weight))
     return tuple(found.values())

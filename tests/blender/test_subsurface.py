@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bodies that scatter light below their surface, as bright as in Cycles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import pytest
+
+SKIN = {"Color": (0.8, 0.5, 0.3), "Radius": (1.0, 0.2, 0.1)}
+PRINCIPLED = "ShaderNodeBsdfPrincipled"
+SCATTERING = "ShaderNodeSubsurfaceScattering"
+
+
+def add_ball(studio: Any, material: Any) -> None:
+    studio.ball(1.0, material, rings=32)
+
+
+def add_cube(studio: Any, material: Any) -> None:
+    studio.box((1.5, 1.5, 1.5), material)
+
+
+def add_slab(studio: Any, material: Any) -> None:
+    studio.box((3, 3, 0.2), material)
+
+
+def light(studio: Any) -> None:
+    """A lamp above, one behind, and the camera."""
+    studio.area(120, (1.5, -1, 3), size=0.6)
+    studio.lamp("POINT", 150, (-1.5, 2.5, -0.5), shadow_soft_size=0.2)
+    studio.camera((1.5, -4.5, 2.2), (0, 0, 0), lens=55)
+    studio.scene.shlight.pixel_samples = 16
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 0, 0), reason="methods have other names")
+@pytest.mark.parametrize(
+    ("add", "inputs"),
+    [
+        pytest.param(add_ball, {"falloff": "RANDOM_WALK", "Scale": 0.2}, id="walk"),
+        pytest.param(add_cube, {"falloff": "RANDOM_WALK", "Scale": 0.6, "Roughness": 0.2, "IOR": 1.8}, id="bent"),
+        pytest.param(add_slab, {"falloff": "RANDOM_WALK_SKIN", "Scale": 0.3, "Anisotropy": 0.6}, id="skin"),
+        pytest.param(add_ball, {"falloff": "BURLEY", "Scale": 0.5}, id="burley"),
+        pytest.param(add_ball, {"falloff": "RANDOM_WALK", "Scale": 1e-9}, id="none"),
+    ],
+)
+def test_subsurface_scattering(studio: Any, add: Any, inputs: dict[str, Any]) -> None:
+    add(studio, studio.material(SCATTERING, **SKIN, **inputs))
+    light(studio)
+    assert studio.messages() == []
+    studio.compare(mean=7e-3, error=2e-2)
+
+
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_a_principled_body_on_a_floor(studio: Any, bounces: int) -> None:
+    """Light that has bounced off a diffuse surface before enters diffusely, as in Cycles before 5.2."""
+    own = {"Base_Color": SKIN["Color"], "Subsurface_Radius": SKIN["Radius"]}
+    if bpy.app.version < (4, 0, 0):
+        own |= {"Subsurface": 0.15, "Subsurface_Color": (0.2, 0.8, 0.3), "Specular": 0.0}
+    else:
+        own |= {"Subsurface_Weight": 0.7, "Subsurface_Scale": 0.15, "subsurface_method": "RANDOM_WALK_SKIN"}
+    add_ball(studio, studio.material(PRINCIPLED, **own))
+    studio.plane(8, studio.material(), location=(0, 0, -1.05))
+    light(studio)
+    cycles = studio.scene.cycles
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
+    studio.scene.shlight.max_bounces = bounces
+    studio.compare(mean=7e-3, error=1e-2)
