@@ -76,9 +76,8 @@ def test_a_name_that_is_not_utf8(studio: Any, kind: str) -> None:
     saved_with_name(studio, kind)
     image = studio.render("SHLIGHT")
     assert image[..., :3].mean() > 0.1
-    lines = record.last.report.lines()
-    if kind in {"LAB", "COL"}:
-        assert any(f"NAMEüé{kind}" in line for line in lines)
+    if kind == "LAB":
+        assert any(f"NAMEüé{kind}" in line for line in record.last.report.lines())
 
 
 @pytest.mark.parametrize("kind", ["WOR", "SKY"])

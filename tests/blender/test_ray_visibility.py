@@ -19,7 +19,7 @@ def stage(studio: Any, bounces: int) -> dict[str, Any]:
     white = studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8))
     mirror = studio.material("ShaderNodeBsdfAnisotropic", "Mirror", Color=(0.9, 0.9, 0.9), Roughness=0.0)
     glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(1, 1, 1), Roughness=0.0, IOR=1.1)
-    glow = studio.material("ShaderNodeEmission", "Glow", Color=(1, 0.6, 0.3), Strength=1.0)
+    glow = studio.material("ShaderNodeEmission", "Glow", Color=(1, 0.6, 0.3), Strength=0.5)
     studio.plane(8, white)
     studio.box((6, 0.1, 3), mirror, "Wall", location=(0, 1.5, 1.5))
     studio.box((1.2, 0.1, 1), glass, "Pane", location=(1.6, -1.6, 0.5))
@@ -27,7 +27,7 @@ def stage(studio: Any, bounces: int) -> dict[str, Any]:
         kind: studio.box((0.5, 0.5, 0.9), glow if i % 2 == 1 else white, kind, location=(1.1 * i - 2.2, 0.2, 0.6))
         for i, kind in enumerate(KINDS)
     }
-    studio.area(150, (1.5, -3, 4), size=1)
+    studio.lamp("POINT", 150, (1.5, -3, 4), shadow_soft_size=0.0)  # of an area, caustics would be Cycles' noise
     studio.plain_world((0.1, 0.15, 0.2))
     studio.camera((1.5, -7, 2.5), (0, 0, 0.6))
     studio.scene.shlight.max_bounces = bounces
@@ -40,7 +40,7 @@ def stage(studio: Any, bounces: int) -> dict[str, Any]:
 def test_objects_are_hidden_from_kinds_of_rays(studio: Any, bounces: int) -> None:
     for kind, box in stage(studio, bounces).items():
         setattr(box, f"visible_{kind}", False)
-    studio.compare(mean=5e-3, error=2e-3)
+    studio.compare(mean=5e-3, error=6e-3)
     glass = [line for line in studio.messages(most=99) if "Glass" in line]
     assert studio.messages(most=99) == (glass if bounces == 0 else [])
 
@@ -55,7 +55,7 @@ def test_holdouts_and_collections_that_are_indirect_only(studio: Any) -> None:
         scene.collection.objects.unlink(boxes[kind])
         own.objects.link(boxes[kind])
         setattr(bpy.context.view_layer.layer_collection.children[kind], flag, True)
-    _, reference = studio.compare(mean=5e-3, error=2e-3, alpha=1e-2)
+    _, reference = studio.compare(mean=5e-3, error=6e-3, alpha=1e-2)
     assert 0.01 < (reference[..., 3] == 0).mean() < 0.5
     assert studio.messages(most=99) == []
 

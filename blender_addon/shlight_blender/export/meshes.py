@@ -235,7 +235,8 @@ class SceneMeshes:
                 turn_normals=False,
                 terminator_geometry_offset=geometry_offset,
                 terminator_shading_offset=shading_offset,
-                **visibility._asdict(),
+                visible_to=visibility.visible_to,
+                holdout=visibility.holdout,
                 **_materials(made),
             )
         return made
@@ -267,7 +268,8 @@ class SceneMeshes:
             material_indices=slots,
             transforms=np.empty((0, 4, 4)),
             terminator_shading_offset=terminator_offsets(shown)[1],
-            **visibility._asdict(),
+            visible_to=visibility.visible_to,
+            holdout=visibility.holdout,
             **_materials(made),
         )
         return made
