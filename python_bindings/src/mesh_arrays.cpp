@@ -272,7 +272,7 @@ constexpr std::array<std::pair<std::string_view, RayKind>, 5> kRayKinds = {
 std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
     std::uint32_t kinds = 0;
     for (const py::handle& item : py::isinstance<py::str>(names) ? py::make_tuple(names) : py::tuple(names)) {
-        const std::string given = py::str(item).cast<std::string>();
+        const auto given = py::str(item).cast<std::string>();
         const auto known = std::ranges::find(kRayKinds, given, [](const auto& own) { return own.first; });
         if (known == kRayKinds.end()) {
             throw std::invalid_argument(std::string(name) +
