@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
@@ -355,7 +355,7 @@ class Scene:
         turn_normals: bool = True,
         terminator_geometry_offset: float = 0.0,
         terminator_shading_offset: float = 0.0,
-        visible_to: Sequence[str] | None = None,
+        visible_to: Collection[str] | None = None,
         holdout: bool = False,
     ) -> SceneMesh: ...
     def add_curves(
@@ -380,7 +380,7 @@ class Scene:
         material_names: str | Sequence[str] | None = None,
         material_pass_indices: ArrayLike | None = None,
         terminator_shading_offset: float = 0.0,
-        visible_to: Sequence[str] | None = None,
+        visible_to: Collection[str] | None = None,
         holdout: bool = False,
     ) -> SceneMesh: ...
     def add_point_cloud(
@@ -402,7 +402,7 @@ class Scene:
         material_names: str | Sequence[str] | None = None,
         material_pass_indices: ArrayLike | None = None,
         terminator_shading_offset: float = 0.0,
-        visible_to: Sequence[str] | None = None,
+        visible_to: Collection[str] | None = None,
         holdout: bool = False,
     ) -> SceneMesh: ...
     def remove_lights(self) -> None: ...

@@ -425,6 +425,7 @@ constexpr const char* kPrincipledDoc =
     R"(specular_ior_level=0.5, specular_tint=(1.0, 1.0, 1.0), coat_weight=0.0, coat_roughness=0.03, coat_ior=1.5, )"
     R"(coat_tint=(1.0, 1.0, 1.0), coat_normal=None, sheen_weight=0.0, sheen_roughness=0.5, )"
     R"(sheen_tint=(1.0, 1.0, 1.0), transmission_weight=0.0, emission_color=(1.0, 1.0, 1.0), emission_strength=0.0, )"
+    R"(anisotropic=0.0, anisotropic_rotation=0.0, tangent=None, )"
     R"(subsurface_weight=0.0, subsurface_radius=(1.0, 0.2, 0.1), subsurface_scale=0.05, subsurface_ior=1.4, )"
     R"(subsurface_anisotropy=0.0, subsurface_method='random_walk', several_bounces=False, at=None)
 

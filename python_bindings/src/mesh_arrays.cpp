@@ -270,13 +270,24 @@ constexpr std::array<std::pair<std::string_view, RayKind>, 5> kRayKinds = {
 
 /// The bits of kinds by their names.
 std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
+    const auto refuse = [&](const py::handle& given) {
+        throw std::invalid_argument(std::string(name) +
+                                    " must be some of camera, diffuse, glossy, transmission and shadow, got " +
+                                    (py::isinstance<py::str>(given) ? py::str(given).cast<std::string>()
+                                                                    : std::string(Py_TYPE(given.ptr())->tp_name)));
+    };
+    const bool is_one = py::isinstance<py::str>(names);
+    if (!is_one && !py::isinstance<py::list>(names) && !py::isinstance<py::tuple>(names) &&
+        !py::isinstance<py::anyset>(names)) {
+        refuse(names);
+    }
     std::uint32_t kinds = 0;
-    for (const py::handle& item : py::isinstance<py::str>(names) ? py::make_tuple(names) : py::tuple(names)) {
-        const auto given = py::str(item).cast<std::string>();
-        const auto known = std::ranges::find(kRayKinds, given, [](const auto& own) { return own.first; });
+    for (const py::handle& item : is_one ? py::make_tuple(names) : py::tuple(names)) {
+        const auto known = std::ranges::find_if(kRayKinds, [&](const auto& own) {
+            return py::isinstance<py::str>(item) && item.cast<std::string>() == own.first;
+        });
         if (known == kRayKinds.end()) {
-            throw std::invalid_argument(std::string(name) +
-                                        " must be of camera, diffuse, glossy, transmission and shadow, got " + given);
+            refuse(item);
         }
         kinds |= known->second;
     }

@@ -189,7 +189,8 @@ def complete(
     """
     missing = [name for name in names if name not in attributes and name not in OF_CURVES]
     for name in missing:
-        what = f"attribute or UV map '{name.removeprefix(chr(0))}'" if name else "UV map"
+        title = name.removeprefix("\0")
+        what = f"attribute or UV map '{title}'" if name else "UV map"
         text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
         report.add(f"Object '{name_of(shown)}'", text, Effect.SLIGHT)
     black = np.zeros((*corners, 4), dtype=np.float32)

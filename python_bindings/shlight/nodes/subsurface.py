@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import Literal, get_args
 
+from shlight._arrays import checked_name
 from shlight.nodes.shader import Lobe, Shader, Subsurface, lambert
 from shlight.nodes.values import (
     Color,
@@ -102,8 +103,7 @@ def subsurface(
 
 def checked_method(name: str, method: SubsurfaceMethod) -> SubsurfaceMethod:
     """The method. Raises ValueError naming the argument if there is none of this name."""
-    if method not in get_args(SubsurfaceMethod):
-        raise ValueError(f"{name} must be one of {', '.join(get_args(SubsurfaceMethod))}, got {method!r}")
+    checked_name(name, method, get_args(SubsurfaceMethod))
     return method
 
 
