@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 from typing import Literal, NamedTuple, get_args
 
-from shlight._arrays import checked_flag
+from shlight._arrays import checked_flag, checked_name
 from shlight.nodes import energy
 from shlight.nodes.fabrics import microfibre, microfibre_albedo
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
@@ -45,8 +45,7 @@ Distribution = Literal["ggx", "beckmann", "ashikhmin_shirley"]  # of microfacets
 
 def checked_distribution(distribution: Distribution) -> Distribution:
     """The distribution. Raises ValueError if there is none of this name."""
-    if distribution not in get_args(Distribution):
-        raise ValueError(f"distribution must be one of {', '.join(get_args(Distribution))}, got {distribution!r}")
+    checked_name("distribution", distribution, get_args(Distribution))
     return distribution
 
 

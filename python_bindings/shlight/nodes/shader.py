@@ -118,7 +118,7 @@ class Shader:
         lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
         through = tuple(replace(own, weight=color(own.weight * by)) for own in self.refractions)
         emission, transparency = color(self.emission * by), color(self.transparency * by)
-        return Shader(lobes, emission, transparency, self.aovs, through, self.blocks_shadow_rays)
+        return replace(self, lobes=lobes, emission=emission, transparency=transparency, refractions=through)
 
     __rmul__ = __mul__
 
@@ -149,19 +149,21 @@ class Shader:
 
         def turned(of: Any) -> Any:
             alpha = None if of.alpha is None else own(of.alpha)
-            made = replace(of, weight=own_color(of.weight), alpha=alpha, normal=own_normal(of.normal))
-            below = getattr(of, "below", None)
-            if below is None:
-                return made
-            return replace(made, below=replace(below, numbers=tuple(own(value) for value in below.numbers)))
+            return replace(of, weight=own_color(of.weight), alpha=alpha, normal=own_normal(of.normal))
 
-        return Shader(
-            tuple(replace(turned(lobe), rest=tuple(own(value) for value in lobe.rest)) for lobe in self.lobes),
-            own_color(self.emission),
-            own_color(self.transparency),
-            {name: own(of) if isinstance(of, Value) else own_color(of) for name, of in self.aovs.items()},
-            tuple(replace(turned(of), ior=own(of.ior)) for of in self.refractions),
-            self.blocks_shadow_rays,
+        def turned_lobe(lobe: Lobe) -> Any:
+            below = lobe.below
+            if below is not None:
+                below = replace(below, numbers=tuple(own(value) for value in below.numbers))
+            return replace(turned(lobe), rest=tuple(own(value) for value in lobe.rest), below=below)
+
+        return replace(
+            self,
+            lobes=tuple(turned_lobe(lobe) for lobe in self.lobes),
+            emission=own_color(self.emission),
+            transparency=own_color(self.transparency),
+            aovs={name: own(of) if isinstance(of, Value) else own_color(of) for name, of in self.aovs.items()},
+            refractions=tuple(replace(turned(of), ior=own(of.ior)) for of in self.refractions),
         )
 
     def compiled(self) -> _core.SurfaceShader:
