@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -68,9 +69,28 @@ std::array<double, kMaxOrder> relative_errors(const float* lobe, double lobe_tai
     return errors;
 }
 
-/// Step of the logarithm of a varying width; between steps reflected light is interpolated linearly.
-constexpr float kWidthStep = 0.125F;
-constexpr std::size_t kWidthSteps = 96;  // down to the least width
+/// Widths between which the light that a lobe of varying width reflects is interpolated linearly. Their logarithm has
+/// even steps down to a width that band 63 hardly sees, from where on the width itself has steps of the last length.
+class TabulatedWidths {
+  public:
+    static constexpr std::size_t kCount = 37;
+
+    static double width(std::size_t number) {
+        const auto place = static_cast<double>(number);
+        const double narrow = kNarrow * (1 - kStep * (place - kLogarithmic));
+        return place <= kLogarithmic ? std::exp(-kStep * place) : std::max(narrow, kLeast);
+    }
+    /// The position of a width among them, less than kCount - 1.
+    static float place(float width) {
+        const auto last = static_cast<float>(kCount - 1) * (1 - std::numeric_limits<float>::epsilon());
+        const auto own = static_cast<float>(width > kNarrow ? -std::log(width) / kStep
+                                                            : kLogarithmic + (1 - width / kNarrow) / kStep);
+        return std::clamp(own, 0.0F, last);
+    }
+
+  private:
+    static constexpr double kStep = 0.125, kLogarithmic = 28, kNarrow = 0.030197383422318501, kLeast = kNarrow / 64;
+};
 
 }  // namespace
 
@@ -91,7 +111,8 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
         for (const Lobe& lobe : material.lobes()) {
             const bool varies = lobe.varying_width != 0 && !is_stretched(lobe.shape);
             plans.push_back(varies ? Plan() : plan(lobe.shape));
-            width_plans.push_back(varies ? std::make_unique<const ValuesByNumber<Plan>>(kWidthSteps) : nullptr);
+            width_plans.push_back(varies ? std::make_unique<const ValuesByNumber<Plan>>(TabulatedWidths::kCount)
+                                         : nullptr);
         }
     }
 }
@@ -102,11 +123,10 @@ EnvironmentShading::PlanMix EnvironmentShading::plans(std::size_t material, std:
     }
     const auto at = [&](std::size_t step) {
         return &width_plans_[material][lobe]->get(step, [&] {
-            const double tabulated = std::exp(-double{kWidthStep} * static_cast<double>(step));
-            return plan(with_width(materials_[material].lobes()[lobe].shape, tabulated));
+            return plan(with_width(materials_[material].lobes()[lobe].shape, TabulatedWidths::width(step)));
         });
     };
-    const float place = std::clamp(-std::log(width) / kWidthStep, 0.0F, static_cast<float>(kWidthSteps - 2));
+    const float place = TabulatedWidths::place(width);
     const auto step = static_cast<std::size_t>(place);
     return {{at(step), at(step + 1)}, place - static_cast<float>(step)};
 }
@@ -128,7 +148,6 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const 
     const int order = order_;
     const double tolerance = tolerance_;
     const bool may_be_narrow = order == 0 && is_glossy(shape);
-    const bool sees = sees_texels(shape);
     Plan plan = {sh_projection(shape), {}};
     for (std::size_t node = 0; node < plan.lobe->node_count(); ++node) {
         const auto errors = relative_errors(plan.lobe->powers(node), plan.lobe->tail(node), map.coefficients);
@@ -139,7 +158,7 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const 
             chosen = static_cast<int>(sufficient - errors.begin()) + 1;
         }
         const double error = errors[static_cast<std::size_t>(chosen - 1)];
-        const bool narrow = sees || (may_be_narrow && error > std::max(kDirectionError, tolerance));
+        const bool narrow = may_be_narrow && error > std::max(kDirectionError, tolerance);
         plan.choices.push_back({narrow ? kMaxOrder : chosen, narrow, error <= tolerance});
     }
     return plan;
@@ -149,8 +168,11 @@ EnvironmentShading::Choice EnvironmentShading::either(const Choice& a, const Cho
     return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};
 }
 
-EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, double cos_theta_o, double azimuth) {
-    return either(choose(*mix.plans[0], cos_theta_o, azimuth), choose(*mix.plans[1], cos_theta_o, azimuth));
+EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, const LobeShape& shape, double cos_theta_o,
+                                                      double azimuth) const {
+    const Choice choice =
+        either(choose(*mix.plans[0], cos_theta_o, azimuth), choose(*mix.plans[1], cos_theta_o, azimuth));
+    return sees_texels(shape) ? Choice{kMaxOrder, true, choice.met} : choice;
 }
 
 EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o, double azimuth) {
@@ -219,14 +241,15 @@ class EnvironmentShading::Harmonics {
   public:
     explicit Harmonics(const ColorHarmonics& light) : light_(&light) {}
 
-    /// Adds share times what a lobe reflects to value. azimuth: see TableShape. All stay where they are until
-    /// `finish`. to_light: from the frame of the view.
-    void add(const ShProjection& lobe, float cos_theta_o, float own_azimuth, const glm::dmat3& to_light, int order,
-             float share, Rgb& value) {
+    /// Adds what a lobe reflects to value. azimuth: see TableShape. All stay where they are until `finish`. to_light:
+    /// from the frame of the view.
+    void add(const PlanMix& mix, float cos_theta_o, float own_azimuth, const glm::dmat3& to_light, int order,
+             Rgb& value) {
+        const ShProjection& lobe = *mix.plans[0]->lobe;
         const double azimuth = lobe.azimuth_of_view(own_azimuth);
         const glm::dmat3 turn = glm::dmat3({std::cos(azimuth), -std::sin(azimuth), 0},
                                            {std::sin(azimuth), std::cos(azimuth), 0}, {0, 0, 1});
-        const Wanted wanted = {&lobe, cos_theta_o, own_azimuth, false, to_light * turn, order, share, &value};
+        const Wanted wanted = {mix, cos_theta_o, own_azimuth, false, to_light * turn, order, &value};
         (lobe.is_zonal() ? zonal_ : turned_).push_back(wanted);
         if (lobe.has_sines()) {
             turned_.push_back(wanted);
@@ -237,7 +260,7 @@ class EnvironmentShading::Harmonics {
     void finish() {
         for (std::span<Wanted> rest = zonal_; !rest.empty();) {
             const auto alike = [&, first = rest[0]](const Wanted& own) {
-                return own.lobe == first.lobe && own.order == first.order;
+                return own.mix.plans[0]->lobe == first.mix.plans[0]->lobe && own.order == first.order;
             };
             const auto others = std::stable_partition(rest.begin(), rest.end(), alike);
             const auto count = static_cast<std::size_t>(others - rest.begin());
@@ -249,20 +272,29 @@ class EnvironmentShading::Harmonics {
 
   private:
     struct Wanted {
-        const ShProjection* lobe;
+        PlanMix mix;
         float cos_theta_o, azimuth;
         bool sines;
         glm::dmat3 to_light;
         int order;
-        float share;
         Rgb* value;
+
+        void terms(float* out) const {
+            mix.plans[0]->lobe->coefficients(cos_theta_o, azimuth, sines, order, out);
+            if (mix.share > 0) {
+                std::array<float, kCosineMax> second;
+                mix.plans[1]->lobe->coefficients(cos_theta_o, azimuth, sines, order, second.data());
+                std::transform(out, out + cosine_count(order), second.begin(), out,
+                               [&](float a, float b) { return a + mix.share * (b - a); });
+            }
+        }
     };
 
     /// Adds zonal lobes of one shape and order, as sums of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
     void add_zonal(std::span<const Wanted> some) {
         const int order = some[0].order;
         std::array<float, kCosineMax> terms;
-        some[0].lobe->coefficients(some[0].cos_theta_o, some[0].azimuth, false, order, terms.data());
+        some[0].terms(terms.data());
         ColorHarmonics reflected = *light_;
         for (int l = 0; l < order; ++l) {
             const float factor =
@@ -284,7 +316,7 @@ class EnvironmentShading::Harmonics {
                 for (int c = 0; c < 3; ++c) {
                     dot_products(reflected[static_cast<std::size_t>(c)].data(), &basis_[i * size], size, 1, &sum[c]);
                 }
-                *own[i].value += own[i].share * sum;
+                *own[i].value += sum;
             }
         }
     }
@@ -300,12 +332,12 @@ class EnvironmentShading::Harmonics {
                 const Wanted& own = some[std::min(i, some.size() - 1)];
                 TurnedLobe& lobe =
                     lobes_.emplace_back(TurnedLobe{{}, BandRotation(own.to_light), own.sines ? 1.0F : 0.0F});
-                own.lobe->coefficients(own.cos_theta_o, own.azimuth, own.sines, own.order, lobe.terms.data());
+                own.terms(lobe.terms.data());
             }
             std::array<Rgb, kTurnedLanes> reflected;
             reflect_turned(lobes_, some.back().order, *light_, reflected);
             for (std::size_t i = 0; i < some.size(); ++i) {
-                *some[i].value += some[i].share * reflected[i];
+                *some[i].value += reflected[i];
             }
         }
     }
@@ -362,21 +394,17 @@ void EnvironmentShading::for_each_lobe(const ShadingPoints& points, const Functi
 
 void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const {
     Harmonics harmonics(environment_->map()->coefficients.channels);
-    for_each_lobe(
-        points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
-            if (is_stretched(shape)) {
-                return;
-            }
-            const float cosine = points.cos_theta_o[i];
-            const LobeForm& form = points.forms(i)[lobe];
-            const PlanMix mix = plans(points.material[i], lobe, form.width);
-            const int order = choose(mix, cosine, form.azimuth).order;
-            Rgb& smooth = parts.smooth[at];
-            harmonics.add(*mix.plans[0]->lobe, cosine, form.azimuth, point.to_map(), order, 1 - mix.share, smooth);
-            if (mix.share > 0) {
-                harmonics.add(*mix.plans[1]->lobe, cosine, form.azimuth, point.to_map(), order, mix.share, smooth);
-            }
-        });
+    for_each_lobe(points,
+                  [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
+                      if (is_stretched(shape)) {
+                          return;
+                      }
+                      const float cosine = points.cos_theta_o[i];
+                      const LobeForm& form = points.forms(i)[lobe];
+                      const PlanMix mix = plans(points.material[i], lobe, form.width);
+                      const int order = choose(mix, shape, cosine, form.azimuth).order;
+                      harmonics.add(mix, cosine, form.azimuth, point.to_map(), order, parts.smooth[at]);
+                  });
     harmonics.finish();
     for_each_lobe(
         points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
@@ -388,7 +416,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
                 return;
             }
             const Choice choice =
-                whole ? Choice{0, true, true} : choose(plans(material, lobe, form.width), cosine, form.azimuth);
+                whole ? Choice{0, true, true} : choose(plans(material, lobe, form.width), shape, cosine, form.azimuth);
             if (!sees_texels(shape)) {
                 parts.spots[at] = spots_->reflected(shape, point.to_map(), point.view());
             }

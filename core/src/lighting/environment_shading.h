@@ -71,7 +71,8 @@ class EnvironmentShading {
     template <class Function>
     void for_each_lobe(const ShadingPoints& points, const Function& function) const;
     static Choice choose(const Plan& plan, double cos_theta_o, double azimuth);
-    static Choice choose(const PlanMix& mix, double cos_theta_o, double azimuth);
+    /// shape: with the width that the mix stands for.
+    Choice choose(const PlanMix& mix, const LobeShape& shape, double cos_theta_o, double azimuth) const;
     /// Returns what serves both.
     static Choice either(const Choice& a, const Choice& b);
 
@@ -82,7 +83,7 @@ class EnvironmentShading {
     double tolerance_;
     std::optional<EnvironmentSpots> spots_;
     std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
-    /// Plans of lobes whose width varies, at even steps of its logarithm; null: the width is the same.
+    /// Plans of lobes whose width varies, at TabulatedWidths; null: the width is the same.
     std::vector<std::vector<std::unique_ptr<const ValuesByNumber<Plan>>>> width_plans_;
 };
 

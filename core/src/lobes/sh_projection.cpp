@@ -16,8 +16,12 @@
 namespace shlight {
 namespace {
 
-/// Number of lobes that are kept, some 1 MB each, and of anisotropic ones of up to 26 MB.
-constexpr std::size_t kRecentLobes = 32, kRecentAnisotropicLobes = 12;
+/// Number of lobes that are kept, some 1 MB each, and of anisotropic ones of up to 26 MB. A picture of roughness asks
+/// for up to 38 widths of each Fresnel factor.
+constexpr std::size_t kRecentLobes = 128, kRecentAnisotropicLobes = 12;
+/// For moments within 1e-4 of a lobe's albedo, except for lobes at the horizon that are narrower than a hundredth of
+/// it.
+constexpr PanelLengths kPanels = {std::numbers::pi / 7, 2, 1.2};
 
 }  // namespace
 
@@ -33,7 +37,7 @@ ShProjection::ShProjection(const LobeShape& shape) {
             add_node({node.cosines, node.sines}, node.norm_squared);
         }
     } else {
-        for (const LobeMoments& node : moments_of_all_views(shape)) {
+        for (const LobeMoments& node : moments_of_all_views(shape, kPanels)) {
             add_node({node.moments}, node.norm_squared);
         }
     }
