@@ -257,6 +257,8 @@ class _SeenBy(TypedDict, total=False):
     glossy: bool  # True unless given
     camera: bool  # False unless given
     group: str | None  # None unless given
+    receivers: Collection[int] | None  # None unless given
+    blockers: Collection[int] | None  # None unless given
 
 class _Lens(TypedDict, total=False):
     aperture_size: float  # 0 unless given
@@ -357,6 +359,10 @@ class Scene:
         terminator_shading_offset: float = 0.0,
         visible_to: Collection[str] | None = None,
         holdout: bool = False,
+        light_set: int = 0,
+        shadow_set: int = 0,
+        receivers: Collection[int] | None = None,
+        blockers: Collection[int] | None = None,
     ) -> SceneMesh: ...
     def add_curves(
         self,
@@ -382,6 +388,8 @@ class Scene:
         terminator_shading_offset: float = 0.0,
         visible_to: Collection[str] | None = None,
         holdout: bool = False,
+        light_set: int = 0,
+        shadow_set: int = 0,
     ) -> SceneMesh: ...
     def add_point_cloud(
         self,
@@ -404,6 +412,8 @@ class Scene:
         terminator_shading_offset: float = 0.0,
         visible_to: Collection[str] | None = None,
         holdout: bool = False,
+        light_set: int = 0,
+        shadow_set: int = 0,
     ) -> SceneMesh: ...
     def remove_lights(self) -> None: ...
     def add_sphere_light(

@@ -22,6 +22,8 @@ constexpr const char* kTraitsDoc =
     R"(shadows: False: it lights what it cannot see too. diffuse, glossy: False: diffuse or glossy reflection leaves it out.
 camera: True: the camera sees its radiance, added to that of what is behind it; not of a light of no size.
 group: name of its light group, or None.
+receivers: numbers of the light sets that it lights, see Scene.add_mesh; None: all.
+blockers: numbers of the shadow sets that block it; None: all.
 
 Returns the Light, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
@@ -86,13 +88,15 @@ tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; T
 )";
 
 LightTraits traits_from(const py::object& scene, const py::object& shadows, const py::object& diffuse,
-                        const py::object& glossy, const py::object& camera, const py::object& group) {
+                        const py::object& glossy, const py::object& camera, const py::object& group,
+                        const py::object& receivers, const py::object& blockers) {
     LightTraits traits;
     traits.casts_shadows = flag_from("shadows", shadows);
     traits.lights_diffuse = flag_from("diffuse", diffuse);
     traits.lights_glossy = flag_from("glossy", glossy);
     traits.seen_by_camera = flag_from("camera", camera);
     traits.group = group_from(scene.cast<SceneObject&>(), group);
+    traits.links = links_from(receivers, blockers);
     return traits;
 }
 
@@ -160,12 +164,13 @@ bool is_mirrored(const LampRecord& own) {
 LampHandle add_sphere_light(const py::object& self, const py::object& center, const py::object& radius,
                             const py::object& radiance, const py::object& facing_disk, const py::object& shadows,
                             const py::object& diffuse, const py::object& glossy, const py::object& camera,
-                            const py::object& group) {
+                            const py::object& group, const py::object& receivers, const py::object& blockers) {
     const Vec3d place = vector_from("center", center);
     const double size = real_from("radius", radius);
     const Rgb strength = color_from("radiance", radiance);
     const bool faces = flag_from("facing_disk", facing_disk);
-    return add_lamp(self, {"sphere", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+    return add_lamp(self, {"sphere", "radiance", strength,
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
                            [=](const LampRecord& own) -> Light {
                                return make_sphere_light(moved(own, place), even_scale(own.to_world, own.kind) * size,
                                                         own.strength, faces, own.traits);
@@ -174,11 +179,13 @@ LampHandle add_sphere_light(const py::object& self, const py::object& center, co
 
 LampHandle add_polygon_light(const py::object& self, const py::object& vertices, const py::object& radiance,
                              const py::object& spread, const py::object& shadows, const py::object& diffuse,
-                             const py::object& glossy, const py::object& camera, const py::object& group) {
+                             const py::object& glossy, const py::object& camera, const py::object& group,
+                             const py::object& receivers, const py::object& blockers) {
     const std::vector<Vec3d> corners = points_from("vertices", vertices);
     const Rgb strength = color_from("radiance", radiance);
     const double angle = real_from("spread", spread);
-    return add_lamp(self, {"polygon", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+    return add_lamp(self, {"polygon", "radiance", strength,
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
                            [=](const LampRecord& own) -> Light {
                                std::vector<Vec3d> placed(corners.size());
                                std::transform(corners.begin(), corners.end(), placed.begin(),
@@ -193,13 +200,15 @@ LampHandle add_polygon_light(const py::object& self, const py::object& vertices,
 LampHandle add_disk_light(const py::object& self, const py::object& center, const py::object& half_axis_u,
                           const py::object& half_axis_v, const py::object& radiance, const py::object& spread,
                           const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                          const py::object& camera, const py::object& group) {
+                          const py::object& camera, const py::object& group, const py::object& receivers,
+                          const py::object& blockers) {
     const Vec3d place = vector_from("center", center);
     const Vec3d u = vector_from("half_axis_u", half_axis_u);
     const Vec3d v = vector_from("half_axis_v", half_axis_v);
     const Rgb strength = color_from("radiance", radiance);
     const double angle = real_from("spread", spread);
-    return add_lamp(self, {"disk", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+    return add_lamp(self, {"disk", "radiance", strength,
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
                            [=](const LampRecord& own) -> Light {
                                return make_disk_lamp(moved(own, place), turned(own, u),
                                                      turned(own, is_mirrored(own) ? -v : v), own.strength, angle,
@@ -209,10 +218,12 @@ LampHandle add_disk_light(const py::object& self, const py::object& center, cons
 
 LampHandle add_point_light(const py::object& self, const py::object& position, const py::object& intensity,
                            const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                           const py::object& camera, const py::object& group) {
+                           const py::object& camera, const py::object& group, const py::object& receivers,
+                           const py::object& blockers) {
     const Vec3d place = vector_from("position", position);
     const Rgb strength = color_from("intensity", intensity);
-    return add_lamp(self, {"point", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+    return add_lamp(self, {"point", "intensity", strength,
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
                            [=](const LampRecord& own) -> Light {
                                return make_point_source(moved(own, place), own.strength, own.traits);
                            }});
@@ -222,7 +233,8 @@ LampHandle add_spot_light(const py::object& self, const py::object& position, co
                           const py::object& spot_angle, const py::object& blend, const py::object& intensity,
                           const py::object& radius, const py::object& facing_disk, const py::object& times_cosine,
                           const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                          const py::object& camera, const py::object& group) {
+                          const py::object& camera, const py::object& group, const py::object& receivers,
+                          const py::object& blockers) {
     const Vec3d place = vector_from("position", position);
     const glm::dmat3 axes = axes_from("direction", direction);
     const double angle = real_from("spot_angle", spot_angle);
@@ -231,30 +243,32 @@ LampHandle add_spot_light(const py::object& self, const py::object& position, co
     const Rgb strength = color_from("intensity", intensity);
     const double size = real_from("radius", radius);
     const bool faces = flag_from("facing_disk", facing_disk);
-    return add_lamp(self, {"spot", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
-                           [=](const LampRecord& own) -> Light {
-                               const double scale = even_scale(own.to_world, own.kind);
-                               const SpotProfile profile =
-                                   make_spot_profile(glm::dmat3(own.to_world) * axes / scale, angle, fading, cosine);
-                               return make_spot_light(moved(own, place), profile, own.strength, scale * size, faces,
-                                                      own.traits);
-                           }});
+    return add_lamp(
+        self,
+        {"spot", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
+         [=](const LampRecord& own) -> Light {
+             const double scale = even_scale(own.to_world, own.kind);
+             const SpotProfile profile =
+                 make_spot_profile(glm::dmat3(own.to_world) * axes / scale, angle, fading, cosine);
+             return make_spot_light(moved(own, place), profile, own.strength, scale * size, faces, own.traits);
+         }});
 }
 
 LampHandle add_sun_light(const py::object& self, const py::object& direction, const py::object& angle,
                          const py::object& irradiance, const py::object& tangent, const py::object& shadows,
                          const py::object& diffuse, const py::object& glossy, const py::object& camera,
-                         const py::object& group) {
+                         const py::object& group, const py::object& receivers, const py::object& blockers) {
     const Vec3d way = vector_from("direction", direction);
     const double size = real_from("angle", angle);
     const Rgb strength = color_from("irradiance", irradiance);
     const bool is_tangent = flag_from("tangent", tangent);
-    return add_lamp(self, {"sun", "irradiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
-                           [=](const LampRecord& own) -> Light {
-                               const double scale = even_scale(own.to_world, own.kind);
-                               return make_sun_light(turned(own, way) / scale, size, own.strength, is_tangent,
-                                                     own.traits);
-                           }});
+    return add_lamp(
+        self,
+        {"sun", "irradiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
+         [=](const LampRecord& own) -> Light {
+             const double scale = even_scale(own.to_world, own.kind);
+             return make_sun_light(turned(own, way) / scale, size, own.strength, is_tangent, own.traits);
+         }});
 }
 
 /// A light's strength under the name that its add_..._light has for it.
@@ -337,23 +351,25 @@ void bind_lights(py::module_& m, py::class_<SceneObject>& scene) {
     scene
         .def("add_sphere_light", &add_sphere_light, with_traits(kSphereDoc).c_str(), "center"_a, "radius"_a,
              "radiance"_a, py::kw_only(), "facing_disk"_a = false, "shadows"_a = true, "diffuse"_a = true,
-             "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
+             "glossy"_a = true, "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(),
+             "blockers"_a = py::none())
         .def("add_polygon_light", &add_polygon_light, with_traits(kPolygonDoc).c_str(), "vertices"_a, "radiance"_a,
              py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
-             "camera"_a = false, "group"_a = py::none())
+             "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none())
         .def("add_disk_light", &add_disk_light, with_traits(kDiskDoc).c_str(), "center"_a, "half_axis_u"_a,
              "half_axis_v"_a, "radiance"_a, py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true,
-             "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
+             "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none(),
+             "receivers"_a = py::none(), "blockers"_a = py::none())
         .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
              py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
-             "group"_a = py::none())
+             "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none())
         .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,
              "spot_angle"_a, "blend"_a, "intensity"_a, py::kw_only(), "radius"_a = 0.0, "facing_disk"_a = false,
              "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
-             "group"_a = py::none())
+             "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none())
         .def("add_sun_light", &add_sun_light, with_traits(kSunDoc).c_str(), "direction"_a, "angle"_a, "irradiance"_a,
              py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
-             "camera"_a = false, "group"_a = py::none());
+             "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none());
 }
 
 }  // namespace shlight::python

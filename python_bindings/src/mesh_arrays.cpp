@@ -294,6 +294,19 @@ std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
     return kinds;
 }
 
+/// Bits of the sets with these numbers, which are below `count`.
+std::uint64_t set_bits(const char* name, const py::object& numbers, std::uint32_t count) {
+    if (!py::isinstance<py::list>(numbers) && !py::isinstance<py::tuple>(numbers) &&
+        !py::isinstance<py::anyset>(numbers)) {
+        throw std::invalid_argument(std::string(name) + " must be a list, tuple or set of integers, or None");
+    }
+    std::uint64_t bits = 0;
+    for (const py::handle number : py::tuple(numbers)) {
+        bits |= std::uint64_t{1} << integer_from(name, number, 0, count - 1);
+    }
+    return bits;
+}
+
 /// All but the triangles, curves or spheres, which the mesh has.
 Mesh completed(Mesh mesh, const SurfaceArguments& arguments, AttributeNames& names, SceneObject& scene) {
     add_attributes(mesh, names, "uvs", arguments.uvs);
@@ -311,6 +324,11 @@ Mesh completed(Mesh mesh, const SurfaceArguments& arguments, AttributeNames& nam
                        real_from("terminator_shading_offset", arguments.terminator_shading_offset)};
     mesh.seen_by = arguments.visible_to.is_none() ? kAllRays : ray_kinds_from("visible_to", arguments.visible_to);
     mesh.is_holdout = flag_from("holdout", arguments.holdout);
+    mesh.light_set =
+        static_cast<std::uint32_t>(integer_from("light_set", arguments.links.light_set, 0, kLightSets - 1));
+    const std::int64_t shadow_set = integer_from("shadow_set", arguments.links.shadow_set, 0, kShadowSets - 1);
+    mesh.seen_by &= ~std::uint32_t{kShadowRay} | shadow_rays_of(static_cast<std::uint32_t>(shadow_set));
+    mesh.links = links_from(arguments.links.receivers, arguments.links.blockers);
     return mesh;
 }
 
@@ -330,6 +348,17 @@ void set_normals(MeshShape& mesh, const py::object& value) {
 }
 
 }  // namespace
+
+LightLinks links_from(const py::object& receivers, const py::object& blockers) {
+    LightLinks links;
+    if (!receivers.is_none()) {
+        links.receivers = set_bits("receivers", receivers, kLightSets);
+    }
+    if (!blockers.is_none()) {
+        links.shadow_rays = static_cast<std::uint32_t>(set_bits("blockers", blockers, kShadowSets) * shadow_rays_of(0));
+    }
+    return links;
+}
 
 Vec3d vector_from(const char* name, const py::handle& value) {
     return vectors(name, numbers<double>(name, value, {3}))[0];

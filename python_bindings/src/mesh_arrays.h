@@ -46,12 +46,18 @@ struct PlaceArguments {
     pybind11::object transforms, object_values, object_names, asset_names, object_indices;
 };
 
+/// Arguments about light linking.
+struct LinkArguments {
+    pybind11::object light_set, shadow_set, receivers = pybind11::none(), blockers = pybind11::none();
+};
+
 /// Arguments that meshes, curves and point clouds share.
 struct SurfaceArguments {
     pybind11::object uvs, colors, attributes, material_indices;
     MaterialArguments materials;
     PlaceArguments places;
     pybind11::object turn_normals, terminator_geometry_offset, terminator_shading_offset, visible_to, holdout;
+    LinkArguments links;
 };
 
 /// The arguments of Scene.add_mesh about its triangles.
@@ -67,6 +73,9 @@ struct RoundArguments {
 
 /// The names of a mesh's attributes, in their order.
 using AttributeNames = std::vector<std::string>;
+
+/// None: all.
+LightLinks links_from(const pybind11::object& receivers, const pybind11::object& blockers);
 
 /// Checks shapes and types; Scene::add_mesh checks the rest. names: output, the mesh's attributes. Groups and AOVs are
 /// added to the scene's lists, also by the functions below.

@@ -52,6 +52,9 @@ terminator_geometry_offset, terminator_shading_offset: 0 ... 1, against flat tri
 visible_to: names of the kinds of rays that meet it: "camera", "diffuse" and "glossy" from surfaces that reflect so,
     "transmission" through glass, "shadow" towards lights; None: all. What it emits lights diffuse and glossy surfaces alike.
 holdout: the camera sees nothing there, and the picture is transparent.
+light_set: 0 ... 63, shadow_set: 0 ... 27: numbers by which lights tell what they light, and what blocks them.
+receivers, blockers: numbers of the light sets that its emission lights, and of the shadow sets that block it; None: all.
+    What has the shadow set of a mesh that shines blocks its light too.
 
 Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
@@ -68,7 +71,7 @@ attributes: likewise, of one to four numbers; shlight.nodes.attribute() reads th
 material_indices: (c,) integers, the material of each curve; None: 0 for all.
 emission: as of Scene.add_mesh. Curves are seen to shine; they light nothing but by bounces.
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
-    material_pass_indices, terminator_shading_offset, visible_to, holdout: as of Scene.add_mesh. Radii are scaled by the cube root of a
+    material_pass_indices, terminator_shading_offset, visible_to, holdout, light_set, shadow_set: as of Scene.add_mesh. Radii are scaled by the cube root of a
     transform's determinant.
 
 Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
@@ -81,7 +84,7 @@ radii: [m], not negative: a number, or (n,).
 uvs, attributes, material_indices: as of Scene.add_curves, one for each sphere.
 emission: as of Scene.add_mesh. Spheres are seen to shine; they light nothing but by bounces.
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
-    material_pass_indices, terminator_shading_offset, visible_to, holdout: as of Scene.add_mesh.
+    material_pass_indices, terminator_shading_offset, visible_to, holdout, light_set, shadow_set: as of Scene.add_mesh.
 
 Spheres are met from outside alone. Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
@@ -138,7 +141,8 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                     const py::object& object_indices, const py::object& material_names,
                     const py::object& material_pass_indices, const py::object& turn_normals,
                     const py::object& terminator_geometry_offset, const py::object& terminator_shading_offset,
-                    const py::object& visible_to, const py::object& holdout) {
+                    const py::object& visible_to, const py::object& holdout, const py::object& light_set,
+                    const py::object& shadow_set, const py::object& receivers, const py::object& blockers) {
     return add_shape(self, TriangleArguments{vertices, triangles, normals},
                      {uvs,
                       colors,
@@ -150,7 +154,8 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                       terminator_geometry_offset,
                       terminator_shading_offset,
                       visible_to,
-                      holdout});
+                      holdout,
+                      {light_set, shadow_set, receivers, blockers}});
 }
 
 MeshHandle add_curves(const py::object& self, const py::object& points, const py::object& radii,
@@ -160,7 +165,8 @@ MeshHandle add_curves(const py::object& self, const py::object& points, const py
                       const py::object& object_values, const py::object& group, const py::object& object_names,
                       const py::object& asset_names, const py::object& object_indices, const py::object& material_names,
                       const py::object& material_pass_indices, const py::object& terminator_shading_offset,
-                      const py::object& visible_to, const py::object& holdout) {
+                      const py::object& visible_to, const py::object& holdout, const py::object& light_set,
+                      const py::object& shadow_set) {
     const SurfaceForm form = flag_from("ribbons", ribbons) ? SurfaceForm::ribbons : SurfaceForm::tubes;
     return add_shape(self, RoundArguments{form, points, radii, first, subdivisions},
                      {uvs,
@@ -173,7 +179,8 @@ MeshHandle add_curves(const py::object& self, const py::object& points, const py
                       py::float_(0.0),
                       terminator_shading_offset,
                       visible_to,
-                      holdout});
+                      holdout,
+                      {light_set, shadow_set}});
 }
 
 MeshHandle add_point_cloud(const py::object& self, const py::object& points, const py::object& radii,
@@ -183,7 +190,7 @@ MeshHandle add_point_cloud(const py::object& self, const py::object& points, con
                            const py::object& asset_names, const py::object& object_indices,
                            const py::object& material_names, const py::object& material_pass_indices,
                            const py::object& terminator_shading_offset, const py::object& visible_to,
-                           const py::object& holdout) {
+                           const py::object& holdout, const py::object& light_set, const py::object& shadow_set) {
     return add_shape(self, RoundArguments{SurfaceForm::spheres, points, radii, py::none(), py::none()},
                      {uvs,
                       py::none(),
@@ -195,7 +202,8 @@ MeshHandle add_point_cloud(const py::object& self, const py::object& points, con
                       py::float_(0.0),
                       terminator_shading_offset,
                       visible_to,
-                      holdout});
+                      holdout,
+                      {light_set, shadow_set}});
 }
 
 void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission, const py::object& group,
@@ -354,20 +362,23 @@ void bind_scene(py::module_& m) {
              "object_values"_a = py::none(), "group"_a = py::none(), "object_names"_a = py::none(),
              "asset_names"_a = py::none(), "object_indices"_a = py::none(), "material_names"_a = py::none(),
              "material_pass_indices"_a = py::none(), "turn_normals"_a = true, "terminator_geometry_offset"_a = 0.0,
-             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false)
+             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false, "light_set"_a = 0,
+             "shadow_set"_a = 0, "receivers"_a = py::none(), "blockers"_a = py::none())
         .def("add_curves", &add_curves, kAddCurvesDoc, "points"_a, "radii"_a, "first"_a, py::kw_only(),
              "ribbons"_a = true, "subdivisions"_a = 5, "uvs"_a = py::none(), "attributes"_a = py::none(),
              "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
              "transforms"_a = py::none(), "object_values"_a = py::none(), "group"_a = py::none(),
              "object_names"_a = py::none(), "asset_names"_a = py::none(), "object_indices"_a = py::none(),
              "material_names"_a = py::none(), "material_pass_indices"_a = py::none(),
-             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false)
+             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false, "light_set"_a = 0,
+             "shadow_set"_a = 0)
         .def("add_point_cloud", &add_point_cloud, kAddPointCloudDoc, "points"_a, "radii"_a, py::kw_only(),
              "uvs"_a = py::none(), "attributes"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(),
              "material_indices"_a = py::none(), "transforms"_a = py::none(), "object_values"_a = py::none(),
              "group"_a = py::none(), "object_names"_a = py::none(), "asset_names"_a = py::none(),
              "object_indices"_a = py::none(), "material_names"_a = py::none(), "material_pass_indices"_a = py::none(),
-             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false)
+             "terminator_shading_offset"_a = 0.0, "visible_to"_a = py::none(), "holdout"_a = false, "light_set"_a = 0,
+             "shadow_set"_a = 0)
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),

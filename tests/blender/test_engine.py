@@ -247,7 +247,7 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
 
     joined = shared()
     assert {"DATA_PT_lens", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "RENDER_PT_format"} <= joined
-    assert not {"DATA_PT_light", "DATA_PT_EEVEE_light", "OBJECT_PT_shading"} & joined
+    assert not {"DATA_PT_light", "DATA_PT_EEVEE_light"} & joined
     assert not [name for name in joined if "_freestyle" in name or "_gpencil" in name or "_grease_pencil" in name]
     shlight_blender.unregister()
     shlight_blender.unregister()

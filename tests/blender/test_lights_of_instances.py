@@ -176,20 +176,6 @@ def test_ray_visibility(studio: Any, flag: str, carrier: str) -> None:
     assert studio.messages() == []
 
 
-def test_light_and_shadow_linking_are_named(studio: Any) -> None:
-    stage(studio)
-    linked = lamp(studio, "AREA")
-    linked.location, linked.name = (0, 0, 2), "Key"
-    if not hasattr(linked, "light_linking"):
-        pytest.skip("this version of Blender has no light linking")
-    assert studio.messages() == []
-    linked.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
-    assert studio.messages() == ["Light 'Key': light linking is not supported; it lights everything"]
-    linked.light_linking.receiver_collection = None
-    linked.light_linking.blocker_collection = bpy.data.collections.new("Blockers")
-    assert studio.messages() == ["Light 'Key': shadow linking is not supported; everything shadows it"]
-
-
 def test_portals_give_no_light(studio: Any) -> None:
     stage(studio)
     portal = lamp(studio, "AREA")

@@ -41,7 +41,10 @@ RANDOM = {**COEFFICIENTS, "method": "monte_carlo", "samples": 8, "seed": 1, "sam
 SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "phi_o": 0.3, "tolerance": 1e-3, "threads": 0, "return_effort": True}
 AUTO = {**SHADED, "order": "auto", "method": "auto", "samples": None, "seed": None, "sampling": None}
 SAMPLED = {**SHADED, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "mis"}
-SEEN_BY = {"shadows": True, "diffuse": True, "glossy": True, "camera": False, "group": "key"}
+SEEN_BY = {
+    **{"shadows": True, "diffuse": True, "glossy": True, "camera": False, "group": "key"},
+    **{"receivers": [0], "blockers": {0, 2}},
+}
 RGB = [1.0, 2.0, 3.0]
 LIGHTS: dict[str, dict[str, Any]] = {
     "add_sphere_light": {"center": [0, 0, 1], "radius": 0.1, "radiance": RGB, "facing_disk": False},
@@ -107,13 +110,21 @@ MESH = {
     "turn_normals": False,
     "visible_to": ["camera", "shadow"],
     "holdout": True,
+    "light_set": 1,
+    "shadow_set": 1,
+    "receivers": [1],
+    "blockers": [0],
     "terminator_geometry_offset": 0.1,
     "terminator_shading_offset": 0.1,
 }
 STRANDS = {
     "points": TRIANGLE,
     "radii": [0.1, 0.2, 0.1],
-    **{name: MESH[name] for name in MESH if not name.endswith(("normals", "geometry_offset", "colors"))},
+    **{
+        name: MESH[name]
+        for name in MESH
+        if not name.endswith(("normals", "geometry_offset", "colors", "receivers", "blockers"))
+    },
 }
 del STRANDS["vertices"], STRANDS["triangles"]
 CURVES = {**STRANDS, "first": [0], "ribbons": True, "subdivisions": 3, "uvs": [[0.0, 0.0]]}

@@ -78,6 +78,7 @@ def add_lamp(
         "camera": all(shown.visible_camera for shown in shown_by),
         "glossy": all(shown.visible_glossy for shown in shown_by),
         "group": surroundings.passes.light_part(name_of(lamp_object), name_of(lamp_object, "lightgroup")),
+        **surroundings.linking.links(lamp_object, instancer).of_light(),
     }
     parts = [part._replace(emission=unit * part.emission) for part in glow.parts]
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, parts, to_world, place, traits), report)

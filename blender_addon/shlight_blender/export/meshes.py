@@ -19,6 +19,7 @@ from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
 from .displacement import displace
+from .linking import Links
 from .materials import Surface, read_material
 from .mesh_arrays import MOST_TRIANGLES, MeshArrays, complete, doubled, flattened, object_arrays
 from .mesh_attributes import UV
@@ -45,14 +46,16 @@ RAY_KINDS = {
 
 
 class Visibility(NamedTuple):
-    """The rays that see an object, as arguments of Scene.add_mesh."""
+    """The rays that see an object, as arguments of Scene.add_mesh, and its links."""
 
     visible_to: tuple[str, ...]
     holdout: bool
+    links: Links
 
     @staticmethod
-    def of(instance: Any, view_layer: Any) -> Visibility:
+    def of(instance: Any, surroundings: Surroundings) -> Visibility:
         """Reads the flags of an instance and of its collections in a view layer."""
+        view_layer = surroundings.depsgraph.view_layer
         shown, instancer = instance.object, instance.parent if instance.is_instance else None
         original = shown.original
         hidden = {"camera"} if original.indirect_only_get(view_layer=view_layer) else set()
@@ -60,7 +63,8 @@ class Visibility(NamedTuple):
             if not getattr(shown, flag) or not (instancer is None or getattr(instancer, flag)):
                 hidden.add(kind)
         kinds = tuple(kind for kind in RAY_KINDS.values() if kind not in hidden)
-        return Visibility(kinds, original.holdout_get(view_layer=view_layer))
+        links = surroundings.linking.links(shown, instancer)
+        return Visibility(kinds, original.holdout_get(view_layer=view_layer), links)
 
 
 class Label(NamedTuple):
@@ -140,7 +144,7 @@ class SceneMeshes:
         materials = slot_materials(mesh_object)
         own = (material and material.as_pointer() for material in materials)
         curves = curve_settings(self._surroundings.depsgraph.scene_eval) if kind in (HAIR, CURVES) else {}
-        visibility = Visibility.of(instance, self._surroundings.depsgraph.view_layer)
+        visibility = Visibility.of(instance, self._surroundings)
         settings = (terminator_offsets(mesh_object), visibility, kind, *curves.values())
         key = (mesh_object.data.as_pointer(), self._group(mesh_object), *settings, *own)
         flat = _is_flat(to_world)
@@ -224,6 +228,9 @@ class SceneMeshes:
             if made.emits() and "shadow" not in visibility.visible_to:
                 text = "it shines and is hidden from shadow rays; its far sides light what is before it"
                 report.add(place, text, Effect.LIGHT)
+            links = visibility.links
+            if made.emits() and links.shadow_set not in (links.blockers or (links.shadow_set,)) and len(slots) > 2:
+                report.add(place, "shadow linking lets its light through itself; here it does not", Effect.LIGHT)
             made.mesh = self._scene.add_mesh(
                 arrays.vertices,
                 arrays.triangles,
@@ -237,6 +244,7 @@ class SceneMeshes:
                 terminator_shading_offset=shading_offset,
                 visible_to=visibility.visible_to,
                 holdout=visibility.holdout,
+                **visibility.links._asdict(),
                 **_materials(made),
             )
         return made
@@ -270,6 +278,8 @@ class SceneMeshes:
             terminator_shading_offset=terminator_offsets(shown)[1],
             visible_to=visibility.visible_to,
             holdout=visibility.holdout,
+            light_set=visibility.links.light_set,
+            shadow_set=visibility.links.shadow_set,
             **_materials(made),
         )
         return made

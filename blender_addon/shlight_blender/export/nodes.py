@@ -23,6 +23,7 @@ from ..names import name_of
 from ..passes import PassWishes
 from ..report import Effect, ExportReport
 from .camera import View
+from .linking import Linking
 from .object_values import ObjectValues
 
 RGB = NDArray[np.float64]
@@ -109,13 +110,14 @@ Expression = Value | Vector  # a Color is a Vector that counts with its luminanc
 
 @dataclass
 class Surroundings:
-    """Inputs of nodes other than the surface: the camera, the depsgraph, numbers of objects, and settings."""
+    """Inputs other than a thing's own: the camera, the depsgraph, numbers of objects, settings and links of lights."""
 
     camera_view: View | None = None
     depsgraph: Any = None
     object_values: ObjectValues = field(default_factory=ObjectValues)
     passes: PassWishes = field(default_factory=PassWishes)
     light_bounces: bool = False
+    linking: Linking = field(default_factory=lambda: Linking({}))
     view_is_used: bool = field(default=False, init=False)
 
     @property

@@ -21,6 +21,7 @@ from .camera import Eye, View, set_camera
 from .changes import Changes, everything
 from .images import TEXTURES
 from .lights import add_lamp
+from .linking import Linking
 from .meshes import SceneMeshes
 from .nodes import Surroundings
 from .seen_objects import Culling, culling_of, shares_of_picture
@@ -58,6 +59,7 @@ class _State(NamedTuple):
     moving_frame: float = 0.0  # of pictures that change with the frame
     passes: PassWishes = PassWishes()
     shown: tuple[Any, ...] = ()  # whether meshes are, what is culled, and the objects of all instances that are seen
+    linking: Linking = Linking({})
 
     @staticmethod
     def of(depsgraph: Any, viewport: Any, culling: Culling | None) -> _State:
@@ -77,6 +79,7 @@ class _State(NamedTuple):
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
             (view_layer.use_solid, view_layer.use_strand, culling, *curve_settings(scene).values(), *seen),
+            Linking.of(depsgraph),
         )
 
 
@@ -144,13 +147,18 @@ class ExportedScene:
         self._find_more(changes, _State.of(depsgraph, viewport, self._culling))
         blender_scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
+        if self._state.linking.has_too_many_sets():
+            text = (
+                "lights tell more than 64 sets of receivers or 28 of blockers apart; the others are as objects of none"
+            )
+            self._reports["settings"].add(f"Scene '{name_of(blender_scene)}'", text, Effect.LIGHT)
         if changes.world:
             self._is_lit["world"] = self._world.read(depsgraph, self._state.passes, self._new_report("world"))
         if changes.materials:
             TEXTURES.begin_export()
             bounces = self._state.materials[1]
             self._surroundings = Surroundings(self._view, passes=self._state.passes, light_bounces=bounces)
-        self._surroundings.depsgraph = depsgraph
+        self._surroundings.depsgraph, self._surroundings.linking = depsgraph, self._state.linking
         if changes:
             self._walk(depsgraph, changes, viewport, _asking(waiting))
         report = self._new_report("files")
@@ -171,7 +179,7 @@ class ExportedScene:
         looks_elsewhere = self.is_of_one_camera and self._surroundings.camera_view != self._view
         changes.world |= moved or state.world != old.world
         changes.materials |= moved or looks_elsewhere or state.materials != old.materials
-        changes.objects |= state.shown != old.shown
+        changes.objects |= state.shown != old.shown or state.linking != old.linking
         changes.lamps |= moved or changes.world or changes.objects
 
     def _walk(self, depsgraph: Any, changes: Changes, viewport: Any, ask: Callable[[], None]) -> None:
@@ -200,7 +208,6 @@ class ExportedScene:
 
     def _add_lamp(self, instance: Any) -> bool:
         report, instancer = self._reports["lamps"], _instancer(instance)
-        _report_light_linking((instance.object, instancer), f"Light '{name_of(instance.object)}'", report)
         return add_lamp(self.scene, instance.object, _to_world(instance), report, self._surroundings, instancer)
 
     def _add_object(self, instance: Any, depsgraph: Any, viewport: Any) -> None:
@@ -322,13 +329,3 @@ def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportRep
             report.add(place, text, Effect.THING)
     if view_layer.use_solid and is_subdivided_adaptively(seen, view_layer.id_data):
         report.add(place, "adaptive subdivision is not supported; its mesh is as its modifiers leave it")
-    _report_light_linking((seen, instancer), place, report)
-
-
-def _report_light_linking(shown_by: tuple[Any, Any], place: str, report: ExportReport) -> None:
-    for shown in shown_by:
-        linking = getattr(shown, "light_linking", None)
-        if linking is not None and linking.receiver_collection:
-            report.add(place, "light linking is not supported; it lights everything", Effect.LIGHT)
-        if linking is not None and linking.blocker_collection:
-            report.add(place, "shadow linking is not supported; everything shadows it", Effect.LIGHT)

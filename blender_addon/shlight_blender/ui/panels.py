@@ -21,7 +21,6 @@ EXCLUDED = {
     "DATA_PT_light",
     "DATA_PT_spot",
     "NODE_DATA_PT_light",
-    "OBJECT_PT_shading",  # light linking
 }
 # Parts of panels' names for features that shlight does not draw.
 NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")

@@ -24,6 +24,7 @@ struct LightTraits {
     bool seen_by_camera = false;  ///< camera rays that meet it gain its radiance; it hides nothing
     bool is_surface = false;      ///< rays meet it as a surface of a mesh
     std::uint32_t group = 0;      ///< light group, whose light a render can output separately; 0: none
+    LightLinks links;
 
     bool operator==(const LightTraits&) const = default;
 };

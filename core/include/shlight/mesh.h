@@ -48,6 +48,18 @@ struct Emission {
     }
 };
 
+/// Light linking: what a light lights, and what blocks it.
+struct LightLinks {
+    std::uint64_t receivers = ~std::uint64_t{0};  ///< bits of the light sets that it lights
+    std::uint32_t shadow_rays = kShadowRay;       ///< see shadow_rays_of()
+
+    bool operator==(const LightLinks&) const = default;
+    bool lights(std::uint32_t light_set) const { return (receivers >> light_set & 1) != 0; }
+};
+
+/// Light sets have numbers below this.
+inline constexpr std::uint32_t kLightSets = 64;
+
 /// A material as the renderer meets it.
 struct Material {
     Bsdf bsdf;
@@ -57,6 +69,8 @@ struct Material {
     std::uint32_t group = 0;                      ///< light group of its emission, see LightTraits::group
     std::vector<std::uint32_t> aovs;              ///< see MeshShader
     Label label;
+    std::uint32_t light_set = 0;  ///< see MeshUse
+    LightLinks links;             ///< of its emission
 };
 
 /// A shader program bound to the attributes of a mesh.
@@ -122,9 +136,12 @@ struct MeshUse {
     /// Normals on the other side of their triangle than the viewer are turned once more. Otherwise they stay there, and
     /// what lights them is on that side, as in Cycles.
     bool turns_normals = true;
-    std::uint32_t seen_by = kAllRays;    ///< the RayKind of rays that meet it; its emission lights lobes alike
+    std::uint32_t seen_by = kAllRays;    ///< the RayKind of rays that meet it, a shadow set by its shadow rays; its
+                                         ///< emission lights lobes alike
     bool is_holdout = false;             ///< the camera sees nothing there, neither it nor what is behind
     std::uint32_t group = 0;             ///< light group of its emission, see LightTraits::group
+    std::uint32_t light_set = 0;         ///< lights with it among LightLinks::receivers light this
+    LightLinks links;                    ///< of its emission
     std::vector<Label> object_labels;    ///< one per instance, or none
     std::vector<Label> material_labels;  ///< one per material, or none
 
@@ -139,7 +156,9 @@ struct MeshUse {
                 shader.attributes,
                 group,
                 shader.aovs,
-                index < material_labels.size() ? material_labels[index] : Label()};
+                index < material_labels.size() ? material_labels[index] : Label(),
+                light_set,
+                links};
     }
 };
 

@@ -19,15 +19,22 @@ namespace shlight {
 using Triangle = glm::vec<3, std::uint32_t, glm::defaultp>;
 
 /// Kinds of rays by what has sent them, as bits; a ray may be of several. Shadow rays are those that ask what lies
-/// between a point and a light.
+/// between a point and a light: each shadow set of surfaces has a bit for those that it blocks.
 enum RayKind : std::uint32_t {
     kCameraRay = 1,
     kDiffuseRay = 2,
     kGlossyRay = 4,
     kTransmissionRay = 8,
-    kShadowRay = 16,
-    kAllRays = 31
+    kShadowRay = ~std::uint32_t{15},
+    kAllRays = ~std::uint32_t{0}
 };
+
+/// Shadow sets have numbers below this.
+inline constexpr std::uint32_t kShadowSets = 28;
+/// The shadow rays that surfaces of a set block.
+constexpr std::uint32_t shadow_rays_of(std::uint32_t set) {
+    return std::uint32_t{16} << set;
+}
 
 /// The points origin + t · direction with t_min ≤ t ≤ t_max.
 struct Ray {

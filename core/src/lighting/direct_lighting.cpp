@@ -28,7 +28,7 @@ std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> material
     for (const Material& material : materials) {
         end_if(stopped);
         lobes.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), order,
-                           tolerance);
+                           tolerance, material.light_set);
     }
     end_if(stopped);
     return lobes;

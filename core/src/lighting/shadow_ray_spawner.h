@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "base/ray_rounding.h"
@@ -21,14 +22,16 @@ Vec3d target_offset(const Light& light, const ShadingFrame& frame);
 /// Shadow rays of one hit, in float but for the way from the rounded origin.
 class ShadowRaySpawner {
   public:
-    /// origin: off the surface; target_offset: of the rays' ends, see target_offset().
-    ShadowRaySpawner(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
+    /// origin: off the surface; target_offset: of the rays' ends, see target_offset(); kinds: of the rays.
+    ShadowRaySpawner(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset,
+                     std::uint32_t kinds = kShadowRay)
         : origin_(origin),
           x_(frame.x),
           y_(frame.y),
           z_(frame.z),
           offset_(frame.origin - Vec3d(origin_) + target_offset),
-          local_offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
+          local_offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)),
+          kinds_(kinds) {}
 
     /// To a point in the shading frame, given by a unit direction and a distance.
     /// Infinitely far: without an end.
@@ -37,7 +40,7 @@ class ShadowRaySpawner {
             return along(local_direction);
         }
         const Vec3f way(distance * local_direction + local_offset_);
-        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, kRayEnd};
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, kRayEnd, kinds_};
     }
 
     /// To the end of a way from the hit, along the axes of the world. Each number is written once: GCC makes a copy of
@@ -51,18 +54,19 @@ class ShadowRaySpawner {
         ray.direction.y = way.y + offset_.y;
         ray.direction.z = way.z + offset_.z;
         ray.t_max = kRayEnd;
-        ray.kinds = kShadowRay;
+        ray.kinds = kinds_;
     }
 
     /// Without an end.
     Ray along(const Vec3d& local_direction) const {
         const Vec3f way(local_direction);
-        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, std::numeric_limits<float>::infinity()};
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, std::numeric_limits<float>::infinity(), kinds_};
     }
 
   private:
     Vec3f origin_, x_, y_, z_, offset_;
     Vec3d local_offset_;
+    std::uint32_t kinds_;
 };
 
 }  // namespace shlight

@@ -63,7 +63,8 @@ bool LightTarget::add(const Hits& hits, std::size_t hit) {
 
 void LightTarget::aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) {
     frame_ = &hits.frame[hit];
-    start_.emplace(*frame_, hits.shadow_origin[hit], target_offset(*light_, *frame_));
+    start_.emplace(*frame_, hits.shadow_origin[hit], target_offset(*light_, *frame_),
+                   traits_of(*light_).links.shadow_rays);
     rectangle_ = whole_[index] ? &*whole_[index] : nullptr;
     profile_ = &kEven;
     const auto* mesh = std::get_if<MeshLight>(light_);

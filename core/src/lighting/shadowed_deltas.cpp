@@ -82,6 +82,10 @@ void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& 
             float* of_lobe = values(p, lobe, range);
             const LobeShape shape = materials_[points.material[point]].shape(lobe, points.forms(point)[lobe]);
             lights_->reflect(range, views_, shape, cosine, of_lobe);
+            for (std::size_t i = 0; lights_->are_linked() && i < range.count; ++i) {
+                const bool lit = lights_->lights(range.begin + i, materials_[points.material[point]].light_set());
+                of_lobe[i] = lit ? of_lobe[i] : 0.0F;
+            }
             const Rgb weight = static_cast<float>(points.hit_count(point)) * glm::abs(points.weight(point, lobe));
             add_weighted(of_lobe, lights_->magnitudes(range.begin), weight, range.count, own);
         }

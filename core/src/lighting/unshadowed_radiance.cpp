@@ -99,6 +99,9 @@ void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std:
     }
     std::optional<Rgb> allowed_for;
     for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (!traits_of(lights[i]).links.lights(material.light_set())) {
+            continue;
+        }
         // Profiles and sums over faces ask for a tolerance even if no lobe has a choice.
         const bool asks = views_.chooses() || places_[i].differs ||
                           !std::holds_alternative<EvenProfile>(traits_of(lights[i]).profile);

@@ -34,6 +34,7 @@ DeltaLights::DeltaLights(std::span<const Light> lights) : lights_(lights) {
     }
     casts_shadows_.resize(size);
     group_.resize(size);
+    links_.resize(size);
     is_even_.resize(size);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const auto* point = std::get_if<PointSource>(&lights[i]);
@@ -54,6 +55,8 @@ DeltaLights::DeltaLights(std::span<const Light> lights) : lights_(lights) {
         lights_glossy_[i] = traits.lights_glossy ? 1 : 0;
         casts_shadows_[i] = traits.casts_shadows ? 1 : 0;
         group_[i] = traits.group;
+        links_[i] = traits.links;
+        are_linked_ = are_linked_ || traits.links.receivers != LightLinks().receivers;
         is_even_[i] = std::holds_alternative<EvenProfile>(traits.profile) ? 1 : 0;
         if (is_even_[i] == 0) {
             uneven_.push_back(i);
@@ -104,7 +107,7 @@ Ray DeltaLights::ray(std::size_t i, const Vec3d& origin) const {
     // The vector starts at the rounded origin, so that the ray ends at the source.
     const Vec3f start(origin);
     const float end = w_[i] > 0 ? kRayEnd : std::numeric_limits<float>::infinity();
-    return {start, 0.0F, Vec3f(way(i, Vec3d(start))), end};
+    return {start, 0.0F, Vec3f(way(i, Vec3d(start))), end, links_[i].shadow_rays};
 }
 
 double DeltaLights::changing_distance(const Vec3d& position) const {

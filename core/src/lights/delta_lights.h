@@ -54,6 +54,9 @@ class DeltaLights {
     /// that do not light such lobes.
     void reflect(const DeltaRange& range, const DeltaViews& views, const LobeShape& shape, float cos_theta_o,
                  float* values) const;
+    /// Whether some do not light all light sets.
+    bool are_linked() const { return are_linked_; }
+    bool lights(std::size_t i, std::uint32_t light_set) const { return links_[i].lights(light_set); }
     /// To source i, of any length.
     Vec3d way(std::size_t i, const Vec3d& from) const {
         return {x_[i] - w_[i] * from.x, y_[i] - w_[i] * from.y, z_[i] - w_[i] * from.z};
@@ -74,6 +77,8 @@ class DeltaLights {
     std::vector<float> lights_diffuse_, lights_glossy_;  // 1: it lights such lobes; 0: it does not
     std::vector<std::uint8_t> casts_shadows_, is_even_;  // 1 or 0
     std::vector<std::uint32_t> group_;
+    std::vector<LightLinks> links_;
+    bool are_linked_ = false;
     std::vector<std::size_t> uneven_;  // numbers of the sources that have a profile
 };
 

@@ -20,8 +20,8 @@ bool spread_alike(const Lobe& a, const Lobe& b) {
     return a.varying_width == b.varying_width && sampled_shape(a.shape) == sampled_shape(b.shape);
 }
 
-MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance)
-    : auto_order_(order == 0), tolerance_(tolerance) {
+MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance, std::uint32_t light_set)
+    : auto_order_(order == 0), tolerance_(tolerance), light_set_(light_set) {
     for (const Lobe& lobe : lobes) {
         if (lobe.color == Rgb(0)) {
             continue;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -41,7 +42,8 @@ class MaterialLobes {
   public:
     /// order: the only one, 1 … 64, or 0 to choose orders that meet the tolerance, which is an error of the radiance ÷
     /// the albedo of the whole material, in each colour channel.
-    MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance);
+    /// light_set: see MeshUse.
+    MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance, std::uint32_t light_set = 0);
 
     /// The material's lobes, without black ones.
     std::span<const Lobe> lobes() const { return lobes_; }
@@ -62,6 +64,7 @@ class MaterialLobes {
     /// Whether orders are chosen per view and light; otherwise a fit has only one order.
     bool auto_order() const { return auto_order_; }
     double tolerance() const { return tolerance_; }
+    std::uint32_t light_set() const { return light_set_; }
     /// The lobes' weights at these views, stored in `values`, which must outlive the result.
     LobeWeights weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const;
     /// Width of the narrowest lobe [rad], see narrowest() above. forms: of each lobe, read where it varies.
@@ -81,6 +84,7 @@ class MaterialLobes {
     std::vector<std::shared_ptr<const AnisotropicFit>> anisotropic_;
     bool auto_order_;
     double tolerance_;
+    std::uint32_t light_set_;
 };
 
 }  // namespace shlight

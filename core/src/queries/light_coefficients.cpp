@@ -129,7 +129,9 @@ void PointCoefficients::find(std::span<const Vec3d> points, std::span<const Shad
     std::fill(coefficients.begin(), coefficients.end(), 0.0);
     std::fill(variances.begin(), variances.end(), 0.0);
     for (const Light& light : scene_->lights().first(scene_->extended_light_count())) {
-        add_light(light);
+        if (traits_of(light).links.lights(0)) {
+            add_light(light);
+        }
     }
     if (!scene_->environment().is_black()) {
         add_environment();
@@ -319,7 +321,8 @@ void PointCoefficients::add_deltas(std::size_t hit) {
     ways_.clear();
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < deltas_.padded_size(); ++i) {
-        if (delta_views_.irradiance[i] > 0 && deltas_.shines(i, hits.frame[hit], hits.error[hit])) {
+        if (delta_views_.irradiance[i] > 0 && deltas_.lights(i, 0) &&
+            deltas_.shines(i, hits.frame[hit], hits.error[hit])) {
             numbers_.push_back(i);
             ways_.emplace_back(delta_views_.x[i], delta_views_.y[i], delta_views_.z[i]);
             rays.push_back(deltas_.ray(i, hits.shadow_origin[hit]));

@@ -148,7 +148,7 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
         return;
     }
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
-    const Rgb radiance = lamps.radiance(part, surface, by_group_);
+    const Rgb radiance = lamps.radiance(part, surface, segment.light_set, by_group_);
     sink.add(segment, segment.emitted_bounces(), segment.throughput * radiance);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
         sink.apart.add(sink.in_apart(segment, segment.emitted_bounces()), segment.met(LightKind::emission),
@@ -224,7 +224,8 @@ void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
     }
     const Material& material = scene_->materials()[surface.point.material];
     const bool by_program = material.shader != nullptr && surface.source == RaySource::camera;
-    if (by_program && !material.shader->emission) {
+    const bool is_left_out = surface.light_set && !material.links.lights(*surface.light_set);
+    if (is_left_out || (by_program && !material.shader->emission)) {
         return;
     }
     // The program's emission is what the camera sees; other surfaces are lit by the material's.

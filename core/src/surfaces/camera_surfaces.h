@@ -114,6 +114,7 @@ class CameraSurfaces {
         bool is_broad = false;                        ///< its end need not be seen sharply
         bool diffused = false;                        ///< by a surface before
         std::optional<std::uint32_t> exit_lobe{};     ///< it ends where light enters a body for this lobe
+        std::optional<std::uint32_t> light_set{};     ///< of the surface that has reflected it; see MeshUse
 
         bool sees_lights() const { return source != RaySource::scattered; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -133,6 +134,11 @@ class CameraSurfaces {
                     is_drawn,
                     false,
                     diffused || by == PathKind::diffuse};
+        }
+        Segment from(const Material& material) const {
+            Segment own = *this;
+            own.light_set = material.light_set;
+            return own;
         }
         Segment drawn(bool rough, bool broad) const {
             Segment own = *this;

@@ -209,6 +209,8 @@ void add_emissive_faces(const CompiledMesh& compiled, FaceSide side, const Stopp
     traits.lights_diffuse = (mesh.seen_by & kDiffuseRay) != 0;
     traits.lights_glossy = (mesh.seen_by & kGlossyRay) != 0;
     traits.is_surface = true;
+    traits.links = mesh.links;
+    traits.links.shadow_rays |= mesh.seen_by & kShadowRay;  // they find the light's own faces
     const bool two_sided = side == FaceSide::both;
     for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {
         std::vector<Vec3d> vertices;

@@ -114,6 +114,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     start(surface
               .next(RaySource::mirror, by, !sampled.reflected,
                     weight * static_cast<float>(sampled.weight / division.paths), next)
+              .from(scene_->materials()[surface.point.material])
               .drawn(alpha > kSmooth, division.is_broad),
           next);
 }
@@ -126,7 +127,8 @@ void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& l
     const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
     const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
     const Segment segment =
-        surface.next(RaySource::mirror, PathKind::glossy, false, surface.throughput * lobe.weight * albedo, ray);
+        surface.next(RaySource::mirror, PathKind::glossy, false, surface.throughput * lobe.weight * albedo, ray)
+            .from(scene_->materials()[surface.point.material]);
     add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
     start(segment, ray);
     ++mirror_count_;

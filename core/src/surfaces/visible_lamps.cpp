@@ -111,13 +111,15 @@ VisibleLamps::VisibleLamps(std::span<const Light> lights, LampViewer viewer) {
     }
 }
 
-Rgb VisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
+Rgb VisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface,
+                           const std::optional<std::uint32_t>& light_set, std::span<Rgb> by_group) const {
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
     const double end = std::min<double>(ray.t_max, surface.value_or(ray.t_max));
     const View view = {Vec3d(ray.origin) + double{ray.t_min} * direction, direction, end - ray.t_min, !surface};
     Rgb sum(0);
     for (const Light* lamp : lamps_) {
-        if (std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
+        const bool shows = !light_set || traits_of(*lamp).links.lights(*light_set);
+        if (shows && std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
             const Rgb radiance =
                 strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
             sum += radiance;

@@ -3,6 +3,7 @@
 // Lamps that rays meet. Surfaces that shine are met as surfaces.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,9 +23,10 @@ class VisibleLamps {
 
     bool empty() const { return lamps_.empty(); }
     /// The radiance that the lamps add to a ray, up to a surface at distance `surface`; without a surface up to t_max,
-    /// and from suns. Lamps hide neither each other nor anything else. by_group: the radiance of each light group is
-    /// added to it, unless it is empty.
-    Rgb radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group = {}) const;
+    /// and from suns. Lamps hide neither each other nor anything else. light_set: others do not show it; none: all do.
+    /// by_group: the radiance of each light group is added to it, unless it is empty.
+    Rgb radiance(const Ray& ray, const std::optional<double>& surface,
+                 const std::optional<std::uint32_t>& light_set = std::nullopt, std::span<Rgb> by_group = {}) const;
 
   private:
     std::vector<const Light*> lamps_;
