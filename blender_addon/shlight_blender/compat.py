@@ -342,6 +342,16 @@ def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
 DEFAULT_RADII = {"CURVES": 0.005, "POINTCLOUD": 0.01} if IS_BLENDER_4 else {"CURVES": 0.0, "POINTCLOUD": 0.0}
 
 
+def shutter_position(scene: Any) -> str:
+    """Whether the frame is the START, CENTER or END of the time for which the shutter is open; Cycles' before 4.2."""
+    return str(getattr(position_owner(scene), "motion_blur_position", "CENTER"))
+
+
+def position_owner(scene: Any) -> Any:
+    """The owner of that setting; None: Cycles' add-on is off."""
+    return scene.render if hasattr(scene.render, "motion_blur_position") else getattr(scene, "cycles", None)
+
+
 def curve_settings(scene: Any) -> dict[str, Any]:
     """The arguments of `shlight.Scene.add_curves` that Cycles' settings of curves give."""
     own = getattr(scene, "cycles_curves", None)  # its add-on may be off

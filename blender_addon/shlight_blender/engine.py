@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import traceback
 from typing import Any
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from . import record, running
 from .compat import write_pass
 from .frame import Frame, frame_of, memory_problem
+from .motion_blur import MeanPicture, middle_of, settings_of, times_of
 from .names import is_utf8, name_of, printable
 from .native import native_problem
 from .passes import (
@@ -132,8 +134,12 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         from .export.images import TEXTURES
 
         start = time.perf_counter()
+        times, now_at = times_of(depsgraph.scene, depsgraph.view_layer), depsgraph.scene.frame_current_final
+        mean = MeanPicture(len(times))
         try:
             self._check("Exporting the scene")
+            if len(times) > 1:
+                self._set_time(now_at + middle_of(depsgraph.scene))
             exported = self._export(depsgraph, frame, view)
             settings = render_settings(depsgraph.scene)
             passes = pass_arguments(depsgraph.scene, depsgraph.view_layer)
@@ -152,7 +158,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
             def show(image: NDArray[np.float32], report: Any) -> bool:
                 nonlocal latest, next_update
-                latest = image
+                latest = image = mean.shown(image)
                 self._ends_with_passes = bool(passes)
                 self._status = status_of(report)
                 if (now := time.perf_counter()) >= next_update:
@@ -162,26 +168,36 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 return self._wait(self._status)
 
             self._status = "Rendering"
-            result = shlight.render(
-                exported.scene,
-                frame.width,
-                frame.height,
-                progress=self._progress,
-                on_update=show,
-                **(with_features(passes) if denoises else passes),
-                **settings,
-            )
+            for number, offset in enumerate(times):
+                if len(times) > 1:
+                    self._move(depsgraph, exported, frame, view, now_at + offset)
+                result = shlight.render(
+                    exported.scene,
+                    frame.width,
+                    frame.height,
+                    progress=mean.progress(self._progress),
+                    on_update=show,
+                    **(with_features(passes) if denoises else passes),
+                    **settings_of(settings, number, len(times)),
+                )
+                mean.add(result.layers)
+                if not self._wait(self._status):
+                    break
         except ExportCancelled:
             return None
         except shlight.RenderCancelled:
             return None if latest is None else {"combined": latest}  # what the user has seen stays
+        finally:
+            if len(times) > 1:
+                self._set_time(now_at)
+                self._exported.clear()  # it has things where they were last
         record.last.statistics = result.report
         if inexact := inexact_light(record.last.statistics):
             record.last.report.add("Light", inexact, Effect.SLIGHT)
         stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.meshes.names())
         if not denoises:
-            return result.layers
-        return denoised(result.layers, "high", settings["threads"], lambda _: self._wait("Denoising"))
+            return mean.layers
+        return denoised(mean.layers, "high", settings["threads"], lambda _: self._wait("Denoising"))
 
     def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
         """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""
@@ -197,6 +213,17 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         exported.update(depsgraph, changes, waiting=self._wait)
         self._exported[layer], self._is_new_frame = exported, False
         return exported
+
+    def _set_time(self, time_: float) -> None:
+        self.frame_set(math.floor(time_), subframe=time_ - math.floor(time_))
+
+    def _move(self, depsgraph: Any, exported: Any, frame: Frame, view: str, time_: float) -> None:
+        """Brings an exported scene, and the depsgraph, to another time."""
+        from .export import motion_of
+
+        self._set_time(time_)
+        camera = self._eye(depsgraph, view)
+        exported.move(depsgraph, motion_of(depsgraph), frame=frame, camera=camera, waiting=self._wait)
 
     def _eye(self, depsgraph: Any, view: str) -> Any:
         """The camera of a view, or one of its two eyes."""

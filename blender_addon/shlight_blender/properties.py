@@ -129,6 +129,14 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     # Cycles has the same defaults.
     glossy_bounces: _bounces("Glossy", 4, "Bounces by glossy surfaces and mirrors, at most, within Max Bounces")
     transmission_bounces: _bounces("Transmission", 12, "Bounces through glass, at most, within Max Bounces")
+    motion_times: bpy.props.IntProperty(
+        name="Times",
+        description="Times while the shutter is open of which a picture is rendered; the mean of these is blurred",
+        default=32,
+        min=2,
+        max=1024,
+        soft_max=128,
+    )
     use_pass_lights: bpy.props.BoolProperty(
         name="Lights",
         description="A pass for what each lamp gives to the picture, one for surfaces that shine and one for the world",

@@ -124,8 +124,9 @@ def test_all_view_layers_are_reported_and_the_weightiest_warning_last(
     second = scene.view_layers.new("Second")
     second.layer_collection.children["Other"].exclude = True
     second.use_pass_vector = True
-    scene.render.use_motion_blur = True
-    heavy, middle, slight = "its scale is 0", "motion blur", "passes that are not supported"
+    scene.render.use_motion_blur, scene.shlight.motion_times = True, 2
+    scene.cycles.rolling_shutter_type = "TOP"
+    heavy, middle, slight = "its scale is 0", "rolling shutter", "passes that are not supported"
     for keeps_the_engine in (False, True, True):
         scene.render.use_persistent_data = keeps_the_engine
         capfd.readouterr()

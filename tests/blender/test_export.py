@@ -185,7 +185,7 @@ def test_another_working_space_is_named(studio: Any) -> None:
 def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any) -> None:
     studio.lit_floor()
     scene = studio.scene
-    scene.render.use_motion_blur = True
+    scene.render.use_motion_blur, scene.cycles.rolling_shutter_type = True, "TOP"
     view_layer = bpy.context.view_layer
     view_layer.use_pass_vector = True
     view_layer.cycles.use_pass_shadow_catcher = True
@@ -197,7 +197,7 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     studio.link("Smoke", bpy.data.volumes.new("Smoke"))
     text = "\n".join(messages())
     for part in (
-        "motion blur is not supported",
+        "a rolling shutter is not supported",
         "passes that are not supported: shadow_catcher, vector",
         "World 'Sky': hiding it from diffuse rays",
         "Object 'Catcher': shadow catchers",

@@ -4,7 +4,7 @@
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
 from .camera import Eye, aperture_of, panorama_of, set_panorama, set_projection
-from .changes import Changes, changes_of, everything
+from .changes import Changes, changes_of, everything, motion_of
 from .scene import ExportedScene, export_scene
 from .settings import preview_settings, render_settings, viewport_settings
 
@@ -20,6 +20,7 @@ __all__ = [
     "everything",
     "export_scene",
     "frame_of",
+    "motion_of",
     "panorama_of",
     "preview_settings",
     "render_settings",

@@ -49,6 +49,15 @@ def changes_of(depsgraph: Any) -> Changes:
     return changes
 
 
+def motion_of(depsgraph: Any) -> Changes:
+    """The changes that Cycles blurs: those of places and shapes of objects."""
+    changes = Changes(objects=True)
+    for update in depsgraph.updates:
+        if isinstance(update.id, bpy.types.Object) and update.is_updated_geometry:
+            changes.shapes.add(name_of(update.id, "name_full"))
+    return changes
+
+
 def _add(changes: Changes, update: Any) -> None:
     changed = update.id
     kind = getattr(changed, "type", "")

@@ -104,6 +104,8 @@ class ExportedScene:
         self._is_lit: dict[str, bool] = {}  # by the part of the scene that gives light or none
         self._reports: dict[str, ExportReport] = {}  # likewise
         self._told: set[Any] = set()  # the objects, and what shows them, that the report of objects has
+        self._is_moving = False  # to another time of the same picture
+        self._still: dict[Any, Any] = {}  # where instances are that motion blur leaves out
 
     @property
     def report(self) -> ExportReport:
@@ -168,6 +170,16 @@ class ExportedScene:
         self._find_darkness(blender_scene)
         return bool(changes)
 
+    def move(
+        self, depsgraph: Any, changes: Changes, *, frame: Frame, camera: Any = None, waiting: Waiting | None = None
+    ) -> None:
+        """Takes over where things are at another time while the shutter is open; all else stays, as in Cycles."""
+        self.look_from(depsgraph, frame=frame, camera=camera)
+        self._surroundings.depsgraph = depsgraph
+        self._is_moving = True
+        self._walk(depsgraph, changes, None, _asking(waiting))
+        self._is_moving = False
+
     def _new_report(self, part: str) -> ExportReport:
         self._reports[part] = ExportReport()
         return self._reports[part]
@@ -212,7 +224,8 @@ class ExportedScene:
 
     def _add_object(self, instance: Any, depsgraph: Any, viewport: Any) -> None:
         seen, view_layer, report = instance.object, depsgraph.view_layer_eval, self._reports["objects"]
-        if self._culling is not None and self._culling.leaves_out(seen, _to_world(instance)):
+        to_world = self._place(instance)
+        if self._culling is not None and self._culling.leaves_out(seen, to_world):
             return
         is_drawn = _is_seen(instance, viewport) and getattr(view_layer, FILTERS.get(seen.type, ""), True)
         if seen.type in DRAWN_TYPES:
@@ -223,12 +236,22 @@ class ExportedScene:
                 self._told.add(key)
                 _report_object(seen, instancer, view_layer, report)
             if is_drawn:
-                self.meshes.add(instance, _to_world(instance), DRAWN_TYPES[seen.type])
+                self.meshes.add(instance, to_world, DRAWN_TYPES[seen.type])
             if view_layer.use_strand and _is_hairy(instance, viewport, depsgraph):
-                self.meshes.add(instance, _to_world(instance), HAIR)
+                self.meshes.add(instance, to_world, HAIR)
         elif seen.type in UNSUPPORTED_TYPES and is_drawn:
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{name_of(seen)}'", text, Effect.THING)
+
+    def _place(self, instance: Any) -> Any:
+        """The transform of an instance; one that is not to be blurred keeps that of the picture's own time."""
+        to_world, instancer = _to_world(instance), _instancer(instance)
+        if _moves(instance.object) and (instancer is None or _moves(instancer)):
+            return to_world
+        key = instance.object.original.as_pointer(), instancer and instancer.name_full, *instance.persistent_id
+        if not self._is_moving:
+            self._still[key] = to_world
+        return self._still.get(key, to_world)
 
     def _weigh_report(self, depsgraph: Any) -> None:
         """Orders the report of a picture by how much of it each finding can change."""
@@ -318,6 +341,11 @@ def _instancer(instance: Any) -> Any:
     return instance.parent if instance.is_instance else None
 
 
+def _moves(shown: Any) -> bool:
+    """Whether motion blur is that of the object: the switch is that of Cycles' add-on."""
+    return bool(getattr(getattr(shown.original, "cycles", None), "use_motion_blur", True))
+
+
 def _to_world(instance: Any) -> Any:
     return np.array(instance.matrix_world, dtype=np.float64)
 
@@ -327,5 +355,8 @@ def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportRep
     for name, (neutral, text) in VISIBILITY.items():
         if view_layer.use_solid and any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
             report.add(place, text, Effect.THING)
+    blur = getattr(seen.original, "cycles", None)
+    if view_layer.id_data.render.use_motion_blur and not getattr(blur, "use_deform_motion", True):
+        report.add(place, "its deformation is blurred although that is switched off")
     if view_layer.use_solid and is_subdivided_adaptively(seen, view_layer.id_data):
         report.add(place, "adaptive subdivision is not supported; its mesh is as its modifiers leave it")

@@ -78,8 +78,8 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     render = scene.render
     if (scene.shlight.use_denoising or scene.shlight.preview_use_denoising) and not has_denoiser():
         report.add(place, "this Blender comes without Open Image Denoise; noise stays", Effect.SLIGHT)
-    if render.use_motion_blur:
-        report.add(place, "motion blur is not supported; everything stands still")
+    if render.use_motion_blur and getattr(getattr(scene, "cycles", None), "rolling_shutter_type", "NONE") != "NONE":
+        report.add(place, "a rolling shutter is not supported; all of the picture is taken at the same times")
     if getattr(render, "use_freestyle", False):
         report.add(place, "Freestyle lines are not supported; left out")
     limit = getattr(getattr(scene, "cycles", None), "texture_limit_render", "OFF")

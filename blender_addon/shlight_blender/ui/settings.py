@@ -10,6 +10,7 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
+from ..compat import position_owner
 from .base import panel
 
 PRESETS = Path(__file__).with_name("presets")
@@ -121,6 +122,24 @@ def film(layout: Any, context: Any) -> None:
             column.prop(cycles, "filter_width", text="Width")
 
 
+@panel(
+    "SHLIGHT_RENDER_PT_motion_blur",
+    "Motion Blur",
+    closed=True,
+    draw_header=lambda layout, context: layout.prop(context.scene.render, "use_motion_blur", text=""),
+)
+def motion_blur(layout: Any, context: Any) -> None:
+    """How long the shutter is open, and when."""
+    scene, render = context.scene, context.scene.render
+    layout.active = render.use_motion_blur
+    owner = position_owner(scene)
+    if owner is not None:
+        layout.prop(owner, "motion_blur_position", text="Position")
+    layout.prop(render, "motion_blur_shutter")
+    layout.prop(scene.shlight, "motion_times")
+    layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+
+
 @panel("SHLIGHT_RENDER_PT_performance", "Performance", closed=True)
 def performance(layout: Any, context: Any) -> None:
     """Threads, and what is kept from frame to frame."""
@@ -142,5 +161,6 @@ CLASSES = (
     light_advanced,
     shadows,
     film,
+    motion_blur,
     performance,
 )
