@@ -257,6 +257,7 @@ class _SeenBy(TypedDict, total=False):
     glossy: bool  # True unless given
     camera: bool  # False unless given
     group: str | None  # None unless given
+    profile: ArrayLike | None  # None unless given
 
 class _Lens(TypedDict, total=False):
     aperture_size: float  # 0 unless given

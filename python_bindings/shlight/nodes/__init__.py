@@ -25,6 +25,7 @@ from shlight.nodes.metals import conductor, metallic
 from shlight.nodes.noises import musgrave, noise, wave
 from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.patterns import Bricks, bricks, magic
+from shlight.nodes.photometric import ies
 from shlight.nodes.principled import (
     glass,
     glossy,
@@ -69,6 +70,7 @@ __all__ = [
     "ggx",
     "glass",
     "glossy",
+    "ies",
     "image",
     "inputs",
     "lambert",
