@@ -91,6 +91,7 @@ def surface_shader(
     aovs: Sequence[tuple[str, int, bool]],
     refractions: Sequence[tuple[int, int, int, int | None, bool]],
     blocks_shadow_rays: bool,
+    absorption: tuple[float, float, float],
 ) -> SurfaceShader: ...
 
 class LobeTable:

@@ -35,7 +35,7 @@ from shlight.nodes.principled import (
     refraction,
     rising_lobes,
 )
-from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, scaled, translucent, transparent
+from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, translucent, transparent
 from shlight.nodes.skies import Sky, preetham
 from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.subsurface import subsurface
@@ -51,6 +51,7 @@ __all__ = [
     "Value",
     "Vector",
     "Voronoi",
+    "absorbing",
     "attribute",
     "backfacing",
     "barycentric",
