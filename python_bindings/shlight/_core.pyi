@@ -91,6 +91,7 @@ def surface_shader(
     aovs: Sequence[tuple[str, int, bool]],
     refractions: Sequence[tuple[int, int, int, int | None, bool]],
     blocks_shadow_rays: bool,
+    absorption: tuple[float, float, float],
 ) -> SurfaceShader: ...
 
 class LobeTable:
@@ -259,6 +260,7 @@ class _SeenBy(TypedDict, total=False):
     group: str | None  # None unless given
     receivers: Collection[int] | None  # None unless given
     blockers: Collection[int] | None  # None unless given
+    profile: ArrayLike | None  # None unless given
 
 class _Lens(TypedDict, total=False):
     aperture_size: float  # 0 unless given

@@ -21,6 +21,8 @@ namespace {
 constexpr const char* kTraitsDoc =
     R"(shadows: False: it lights what it cannot see too. diffuse, glossy: False: diffuse or glossy reflection leaves it out.
 camera: True: the camera sees its radiance, added to that of what is behind it; not of a light of no size.
+profile: (height, width), not negative: factors of its light by the direction in which it leaves, bilinear in equal
+    steps of latitude and longitude like the picture of Scene.set_environment, in the frame that to_world turns; None: 1.
 group: name of its light group, or None.
 receivers: numbers of the light sets that it lights, see Scene.add_mesh; None: all.
 blockers: numbers of the shadow sets that block it; None: all.
@@ -87,9 +89,18 @@ tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; T
     cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
 )";
 
+std::shared_ptr<const DirectionTable> table_from(const char* name, const py::object& value) {
+    const AnyArray<float> array = array_from<float>(name, value);
+    if (array.ndim() != 2 || array.size() == 0) {
+        throw std::invalid_argument(std::string(name) + " must have shape (height, width)");
+    }
+    return std::make_shared<const DirectionTable>(std::vector<float>(array.data(), array.data() + array.size()),
+                                                  static_cast<std::size_t>(array.shape(1)));
+}
+
 LightTraits traits_from(const py::object& scene, const py::object& shadows, const py::object& diffuse,
                         const py::object& glossy, const py::object& camera, const py::object& group,
-                        const py::object& receivers, const py::object& blockers) {
+                        const py::object& receivers, const py::object& blockers, const py::object& profile) {
     LightTraits traits;
     traits.casts_shadows = flag_from("shadows", shadows);
     traits.lights_diffuse = flag_from("diffuse", diffuse);
@@ -97,7 +108,24 @@ LightTraits traits_from(const py::object& scene, const py::object& shadows, cons
     traits.seen_by_camera = flag_from("camera", camera);
     traits.group = group_from(scene.cast<SceneObject&>(), group);
     traits.links = links_from(receivers, blockers);
+    if (!profile.is_none()) {
+        traits.profile = with_table({}, table_from("profile", profile), glm::dmat3(1));
+    }
     return traits;
+}
+
+/// The lamp of a record, whose profile has the table of the record's, if there is one.
+Light made(const LampRecord& record) {
+    Light light = record.make(record);
+    if (const auto* table = std::get_if<TableProfile>(&record.traits.profile)) {
+        std::visit(
+            [&](auto& own) {
+                own.traits.profile =
+                    with_table(own.traits.profile, table->table, glm::inverse(glm::dmat3(record.to_world)));
+            },
+            light);
+    }
+    return light;
 }
 
 /// A lamp of a scene; it keeps the scene alive.
@@ -117,7 +145,7 @@ struct LampHandle {
     /// Makes the lamp anew. Throws std::invalid_argument naming the argument; the lamp is then as it was.
     void change(LampRecord record) const {
         SceneObject& own = scene();
-        own.scene.set_lamp(number, record.make(record));
+        own.scene.set_lamp(number, made(record));
         own.lamps[number] = std::move(record);
         own.changed();
     }
@@ -125,7 +153,7 @@ struct LampHandle {
 
 LampHandle add_lamp(const py::object& self, LampRecord record) {
     auto& scene = self.cast<SceneObject&>();
-    const Scene::LampNumber number = scene.scene.add_lamp(record.make(record));
+    const Scene::LampNumber number = scene.scene.add_lamp(made(record));
     scene.lamps.emplace(number, std::move(record));
     scene.changed();
     return {self, number};
@@ -164,13 +192,14 @@ bool is_mirrored(const LampRecord& own) {
 LampHandle add_sphere_light(const py::object& self, const py::object& center, const py::object& radius,
                             const py::object& radiance, const py::object& facing_disk, const py::object& shadows,
                             const py::object& diffuse, const py::object& glossy, const py::object& camera,
-                            const py::object& group, const py::object& receivers, const py::object& blockers) {
+                            const py::object& group, const py::object& receivers, const py::object& blockers,
+                            const py::object& profile) {
     const Vec3d place = vector_from("center", center);
     const double size = real_from("radius", radius);
     const Rgb strength = color_from("radiance", radiance);
     const bool faces = flag_from("facing_disk", facing_disk);
     return add_lamp(self, {"sphere", "radiance", strength,
-                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers, profile),
                            [=](const LampRecord& own) -> Light {
                                return make_sphere_light(moved(own, place), even_scale(own.to_world, own.kind) * size,
                                                         own.strength, faces, own.traits);
@@ -180,12 +209,12 @@ LampHandle add_sphere_light(const py::object& self, const py::object& center, co
 LampHandle add_polygon_light(const py::object& self, const py::object& vertices, const py::object& radiance,
                              const py::object& spread, const py::object& shadows, const py::object& diffuse,
                              const py::object& glossy, const py::object& camera, const py::object& group,
-                             const py::object& receivers, const py::object& blockers) {
+                             const py::object& receivers, const py::object& blockers, const py::object& profile) {
     const std::vector<Vec3d> corners = points_from("vertices", vertices);
     const Rgb strength = color_from("radiance", radiance);
     const double angle = real_from("spread", spread);
     return add_lamp(self, {"polygon", "radiance", strength,
-                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers, profile),
                            [=](const LampRecord& own) -> Light {
                                std::vector<Vec3d> placed(corners.size());
                                std::transform(corners.begin(), corners.end(), placed.begin(),
@@ -201,14 +230,14 @@ LampHandle add_disk_light(const py::object& self, const py::object& center, cons
                           const py::object& half_axis_v, const py::object& radiance, const py::object& spread,
                           const py::object& shadows, const py::object& diffuse, const py::object& glossy,
                           const py::object& camera, const py::object& group, const py::object& receivers,
-                          const py::object& blockers) {
+                          const py::object& blockers, const py::object& profile) {
     const Vec3d place = vector_from("center", center);
     const Vec3d u = vector_from("half_axis_u", half_axis_u);
     const Vec3d v = vector_from("half_axis_v", half_axis_v);
     const Rgb strength = color_from("radiance", radiance);
     const double angle = real_from("spread", spread);
     return add_lamp(self, {"disk", "radiance", strength,
-                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers, profile),
                            [=](const LampRecord& own) -> Light {
                                return make_disk_lamp(moved(own, place), turned(own, u),
                                                      turned(own, is_mirrored(own) ? -v : v), own.strength, angle,
@@ -219,11 +248,11 @@ LampHandle add_disk_light(const py::object& self, const py::object& center, cons
 LampHandle add_point_light(const py::object& self, const py::object& position, const py::object& intensity,
                            const py::object& shadows, const py::object& diffuse, const py::object& glossy,
                            const py::object& camera, const py::object& group, const py::object& receivers,
-                           const py::object& blockers) {
+                           const py::object& blockers, const py::object& profile) {
     const Vec3d place = vector_from("position", position);
     const Rgb strength = color_from("intensity", intensity);
     return add_lamp(self, {"point", "intensity", strength,
-                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers, profile),
                            [=](const LampRecord& own) -> Light {
                                return make_point_source(moved(own, place), own.strength, own.traits);
                            }});
@@ -234,7 +263,7 @@ LampHandle add_spot_light(const py::object& self, const py::object& position, co
                           const py::object& radius, const py::object& facing_disk, const py::object& times_cosine,
                           const py::object& shadows, const py::object& diffuse, const py::object& glossy,
                           const py::object& camera, const py::object& group, const py::object& receivers,
-                          const py::object& blockers) {
+                          const py::object& blockers, const py::object& profile) {
     const Vec3d place = vector_from("position", position);
     const glm::dmat3 axes = axes_from("direction", direction);
     const double angle = real_from("spot_angle", spot_angle);
@@ -243,32 +272,33 @@ LampHandle add_spot_light(const py::object& self, const py::object& position, co
     const Rgb strength = color_from("intensity", intensity);
     const double size = real_from("radius", radius);
     const bool faces = flag_from("facing_disk", facing_disk);
-    return add_lamp(
-        self,
-        {"spot", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
-         [=](const LampRecord& own) -> Light {
-             const double scale = even_scale(own.to_world, own.kind);
-             const SpotProfile profile =
-                 make_spot_profile(glm::dmat3(own.to_world) * axes / scale, angle, fading, cosine);
-             return make_spot_light(moved(own, place), profile, own.strength, scale * size, faces, own.traits);
-         }});
+    return add_lamp(self, {"spot", "intensity", strength,
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers, profile),
+                           [=](const LampRecord& own) -> Light {
+                               const double scale = even_scale(own.to_world, own.kind);
+                               const SpotProfile cone =
+                                   make_spot_profile(glm::dmat3(own.to_world) * axes / scale, angle, fading, cosine);
+                               return make_spot_light(moved(own, place), cone, own.strength, scale * size, faces,
+                                                      own.traits);
+                           }});
 }
 
 LampHandle add_sun_light(const py::object& self, const py::object& direction, const py::object& angle,
                          const py::object& irradiance, const py::object& tangent, const py::object& shadows,
                          const py::object& diffuse, const py::object& glossy, const py::object& camera,
-                         const py::object& group, const py::object& receivers, const py::object& blockers) {
+                         const py::object& group, const py::object& receivers, const py::object& blockers,
+                         const py::object& profile) {
     const Vec3d way = vector_from("direction", direction);
     const double size = real_from("angle", angle);
     const Rgb strength = color_from("irradiance", irradiance);
     const bool is_tangent = flag_from("tangent", tangent);
-    return add_lamp(
-        self,
-        {"sun", "irradiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers),
-         [=](const LampRecord& own) -> Light {
-             const double scale = even_scale(own.to_world, own.kind);
-             return make_sun_light(turned(own, way) / scale, size, own.strength, is_tangent, own.traits);
-         }});
+    return add_lamp(self, {"sun", "irradiance", strength,
+                           traits_from(self, shadows, diffuse, glossy, camera, group, receivers, blockers, profile),
+                           [=](const LampRecord& own) -> Light {
+                               const double scale = even_scale(own.to_world, own.kind);
+                               return make_sun_light(turned(own, way) / scale, size, own.strength, is_tangent,
+                                                     own.traits);
+                           }});
 }
 
 /// A light's strength under the name that its add_..._light has for it.
@@ -352,24 +382,26 @@ void bind_lights(py::module_& m, py::class_<SceneObject>& scene) {
         .def("add_sphere_light", &add_sphere_light, with_traits(kSphereDoc).c_str(), "center"_a, "radius"_a,
              "radiance"_a, py::kw_only(), "facing_disk"_a = false, "shadows"_a = true, "diffuse"_a = true,
              "glossy"_a = true, "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(),
-             "blockers"_a = py::none())
+             "blockers"_a = py::none(), "profile"_a = py::none())
         .def("add_polygon_light", &add_polygon_light, with_traits(kPolygonDoc).c_str(), "vertices"_a, "radiance"_a,
              py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
-             "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none())
+             "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none(),
+             "profile"_a = py::none())
         .def("add_disk_light", &add_disk_light, with_traits(kDiskDoc).c_str(), "center"_a, "half_axis_u"_a,
              "half_axis_v"_a, "radiance"_a, py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true,
              "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none(),
-             "receivers"_a = py::none(), "blockers"_a = py::none())
+             "receivers"_a = py::none(), "blockers"_a = py::none(), "profile"_a = py::none())
         .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
              py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
-             "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none())
+             "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none(), "profile"_a = py::none())
         .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,
              "spot_angle"_a, "blend"_a, "intensity"_a, py::kw_only(), "radius"_a = 0.0, "facing_disk"_a = false,
              "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
-             "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none())
+             "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none(), "profile"_a = py::none())
         .def("add_sun_light", &add_sun_light, with_traits(kSunDoc).c_str(), "direction"_a, "angle"_a, "irradiance"_a,
              py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
-             "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none());
+             "camera"_a = false, "group"_a = py::none(), "receivers"_a = py::none(), "blockers"_a = py::none(),
+             "profile"_a = py::none());
 }
 
 }  // namespace shlight::python

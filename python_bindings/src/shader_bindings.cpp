@@ -158,9 +158,16 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
                          std::optional<std::uint32_t> emission, std::optional<std::uint32_t> transparency,
                          const ShaderProgram& shadow_program, std::vector<std::string> attribute_names,
                          const std::vector<AovTuple>& aovs, const std::vector<RefractionTuple>& refractions,
-                         bool blocks_shadow_rays) {
-    auto shader = std::make_shared<SurfaceShader>(
-        SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}, blocks_shadow_rays});
+                         bool blocks_shadow_rays, const std::array<float, 3>& absorption) {
+    auto shader = std::make_shared<SurfaceShader>(SurfaceShader{program,
+                                                                {},
+                                                                emission,
+                                                                transparency,
+                                                                shadow_program,
+                                                                {},
+                                                                {},
+                                                                blocks_shadow_rays,
+                                                                Rgb(absorption[0], absorption[1], absorption[2])});
     for (const auto& [kind, ior, weight, alpha, normal, several_bounces, numbers] : lobes) {
         std::optional<ShadedSubsurface> below;
         if (numbers) {
@@ -272,7 +279,7 @@ void bind_shader(py::module_& m) {
         "steps"_a, "tables"_a, "images"_a, "results"_a);
     const py::class_<ShaderObject> shader(m, "SurfaceShader", without_constructor());
     m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
-          "attribute_names"_a, "aovs"_a, "refractions"_a, "blocks_shadow_rays"_a);
+          "attribute_names"_a, "aovs"_a, "refractions"_a, "blocks_shadow_rays"_a, "absorption"_a);
 }
 
 }  // namespace shlight::python

@@ -14,6 +14,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from luminaires import KINDS, luminaire
 
 SIDE = 4  # faces along a patch
 # Seeds of Cycles' pictures, of which the nearest counts: its filter's table ends in a 0, which moves one sample in 1023
@@ -55,7 +56,7 @@ class Case:
 
 def cases() -> list[Case]:
     """All nodes with all their modes."""
-    return [*mathematics(), *colors(), *vectors(), *cells(), *patterns(), *noises(), *places()]
+    return [*mathematics(), *colors(), *vectors(), *cells(), *patterns(), *noises(), *places(), *luminaires()]
 
 
 def choices(node: str, name: str) -> list[str]:
@@ -288,6 +289,18 @@ def places() -> list[Case]:
             properties = {"attribute_type": kind, "attribute_name": name}
             made.append(Case("ShaderNodeAttribute", {}, output, properties))
     return made
+
+
+def luminaires() -> list[Case]:
+    def text(kind: str) -> Callable[[Any], None]:
+        def prepare(node: Any) -> None:
+            node.ies = bpy.data.texts.new(kind)
+            node.ies.write(luminaire(kind, tilted=kind == "half"))
+
+        return prepare
+
+    inputs: dict[str | int, Any] = {"Vector": "a", "Strength": "w"}
+    return [Case("ShaderNodeTexIES", inputs, 0, {}, text(kind), 3e-5) for kind in KINDS]
 
 
 def choices_of_outputs(node: str) -> list[str]:

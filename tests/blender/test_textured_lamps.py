@@ -190,4 +190,4 @@ def test_textures_of_other_lamps_are_named(studio: Any, kind: str) -> None:
     texture_of(studio.lamp(kind, 10.0, (0, 0, 2)), studio.picture(picture()))
     studio.camera()
     (line,) = studio.messages()
-    assert "light that varies over the lamp or with the direction is not supported" in line
+    assert "light that varies over the lamp is not supported" in line

@@ -41,9 +41,9 @@ RANDOM = {**COEFFICIENTS, "method": "monte_carlo", "samples": 8, "seed": 1, "sam
 SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "phi_o": 0.3, "tolerance": 1e-3, "threads": 0, "return_effort": True}
 AUTO = {**SHADED, "order": "auto", "method": "auto", "samples": None, "seed": None, "sampling": None}
 SAMPLED = {**SHADED, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "mis"}
-SEEN_BY = {
+SEEN_BY: dict[str, Any] = {
     **{"shadows": True, "diffuse": True, "glossy": True, "camera": False, "group": "key"},
-    **{"receivers": [0], "blockers": {0, 2}},
+    **{"receivers": [0], "blockers": {0, 2}, "profile": np.ones((2, 4))},
 }
 RGB = [1.0, 2.0, 3.0]
 LIGHTS: dict[str, dict[str, Any]] = {

@@ -16,6 +16,7 @@ import shlight
 from ..compat import Lamps, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
+from .directed_lamps import directed_lamp, varies_by_direction
 from .materials import with_light
 from .nodes import RGB, Surroundings, TreeReader
 from .shaders import NODES
@@ -61,7 +62,7 @@ def add_lamp(
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # guides Cycles' sampling of the world, emits nothing
     unit = float(lamp.energy) * lamp_tint(lamp)
-    glow = _glow_of_nodes(lamp, place, report, surroundings)
+    glow = _glow_of_nodes(lamp, to_world, place, report, surroundings)
     power = unit * glow.mean
     if not np.isfinite(power).all() or not np.isfinite(to_world).all():
         report.add(place, "its power or its transform is not finite; left out", Effect.LIGHT)
@@ -72,7 +73,7 @@ def add_lamp(
     if not power.any():
         return False
     shown_by = [lamp_object] if instancer is None or not Lamps.instancer_hides else [lamp_object, instancer]
-    traits = {
+    traits: dict[str, Any] = {
         "shadows": lamp_casts_shadows(lamp),
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
         "camera": all(shown.visible_camera for shown in shown_by),
@@ -80,11 +81,15 @@ def add_lamp(
         "group": surroundings.passes.light_part(name_of(lamp_object), name_of(lamp_object, "lightgroup")),
         **surroundings.linking.links(lamp_object, instancer).of_light(),
     }
+    if glow.profile is not None and lamp.type != "SUN":
+        traits["profile"] = glow.profile
     parts = [part._replace(emission=unit * part.emission) for part in glow.parts]
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, parts, to_world, place, traits), report)
 
 
-def _glow_of_nodes(lamp: Any, place: str, report: ExportReport, surroundings: Surroundings) -> EvenLamp:
+def _glow_of_nodes(
+    lamp: Any, to_world: NDArray[np.float64], place: str, report: ExportReport, surroundings: Surroundings
+) -> EvenLamp:
     """RGB factors from the lamp's node tree: the emission of its shader, 1 without nodes."""
     if not uses_nodes(lamp):
         return EvenLamp(np.ones(3), [])
@@ -96,10 +101,9 @@ def _glow_of_nodes(lamp: Any, place: str, report: ExportReport, surroundings: Su
     if surface.varying is None:
         return EvenLamp(np.atleast_2d(surface.emission)[0], [])
     remark = partial(report.add, place)
-    if lamp.type == "AREA":
+    if lamp.type == "AREA" and not varies_by_direction(surface.varying):
         return even_lamp(surface.varying, lamp.shape in ROUND_SHAPES, remark)
-    remark("light that varies over the lamp or with the direction is not supported; that of one place is used")
-    return EvenLamp(surface.varying.radiance({}, 1)[0], [])
+    return directed_lamp(surface.varying, lamp, to_world, remark)
 
 
 def _add_point(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:

@@ -24,6 +24,7 @@ from .displacement import Displacement, displaced
 from .emission import VaryingEmission, of_both_sides
 from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin
 from .shaders import NODES, positive
+from .volume_nodes import filled
 
 
 def with_aovs(shader: Shader, reader: TreeReader, tree: Any) -> Shader:
@@ -168,10 +169,9 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
     if output is None:
         report.add(place, "there is no Material Output node; drawn black", Effect.THING)
         return Surface()
-    if origin(output.inputs["Volume"]).node is not None:
-        report.add(place, "volume is not supported; left out")
     reader = TreeReader(material, place, report, surroundings, NODES)
-    shader = with_aovs(reader.shader(output.inputs["Surface"]), reader, material.node_tree)
+    surface = filled(reader.shader(output.inputs["Surface"]), output, reader)
+    shader = with_aovs(surface, reader, material.node_tree)
     shader, displacement = displaced(shader, material, output.inputs["Displacement"], reader)
     if not lets_light_through(material):
         graph = surroundings.depsgraph

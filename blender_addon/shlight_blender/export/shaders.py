@@ -24,6 +24,7 @@ from .nodes import NodeInputs, ReadNode, own_value
 from .noise_nodes import NOISE_NODES
 from .texture_nodes import TEXTURE_NODES
 from .value_nodes import VALUE_NODES
+from .volume_nodes import VOLUME_NODES
 
 # Luminance with which Blender 3.4 takes the brightness out of the base colour for Specular Tint.
 TINT_LUMINANCE = (0.3, 0.6, 0.1)
@@ -274,4 +275,5 @@ NODES: dict[str, ReadNode] = {
     **VALUE_NODES,
     **DISPLACEMENT_NODES,
     **SHADERS,
+    **VOLUME_NODES,
 }

@@ -13,6 +13,7 @@ from shlight.nodes.values import Number, clamp, dot, equal, maximum, normalize, 
 from ..names import name_of
 from ..report import Effect
 from .cell_nodes import CELL_NODES
+from .ies_node import ies_texture
 from .images import MISSING, TextureUse, associates_alpha, datablock_texture, file_texture, has_plain_file, is_known
 from .mesh_attributes import GENERATED
 from .nodes import Expression, NodeInputs, ReadNode
@@ -232,6 +233,7 @@ TEXTURE_NODES: dict[str, ReadNode] = {
     "TEX_IMAGE": image_texture,
     "TEX_ENVIRONMENT": environment_texture,
     "TEX_SKY": sky_texture,
+    "TEX_IES": ies_texture,
     "TEX_CHECKER": _checker,
     "TEX_GRADIENT": _gradient,
     "TEX_WHITE_NOISE": _white_noise,

@@ -159,10 +159,14 @@ class EvenPart(NamedTuple):
 
 
 class EvenLamp(NamedTuple):
-    """A textured lamp; no parts: its mean stands for all of it."""
+    """A textured lamp; no parts: its mean stands for all of it.
+
+    profile: factors of its light by direction, as of `shlight.Scene.add_point_light`; None: the same in all.
+    """
 
     mean: RGB
     parts: list[EvenPart]
+    profile: Array | None = None
 
 
 def even_lamp(emission: VaryingEmission, is_round: bool, remark: Remark) -> EvenLamp:

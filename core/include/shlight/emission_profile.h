@@ -6,10 +6,12 @@
 // profile_range() shows that the factor is constant over the light as seen from a point, it is only a scale.
 #pragma once
 
+#include <memory>
 #include <variant>
 
 #include <glm/mat3x3.hpp>
 
+#include "shlight/direction_table.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -50,7 +52,19 @@ struct TangentProfile {
     bool operator==(const TangentProfile&) const = default;
 };
 
-using EmissionProfile = std::variant<EvenProfile, SpotProfile, SpreadProfile, TangentProfile>;
+/// A factor that is a formula.
+using PlainProfile = std::variant<EvenProfile, SpotProfile, SpreadProfile, TangentProfile>;
+
+/// A plain factor times that of a table, for instance of a luminaire that was measured.
+struct TableProfile {
+    std::shared_ptr<const DirectionTable> table;  ///< not null
+    glm::dmat3 to_table;                          ///< from the world to the table's frame
+    PlainProfile plain;
+
+    bool operator==(const TableProfile&) const = default;
+};
+
+using EmissionProfile = std::variant<EvenProfile, SpotProfile, SpreadProfile, TangentProfile, TableProfile>;
 
 /// Axes for make_spot_profile() of a lamp that shines along a direction of any length > 0.
 /// Throws std::invalid_argument naming the argument: a number that is not finite, length 0.
@@ -66,11 +80,11 @@ SpotProfile make_spot_profile(const glm::dmat3& axes, double spot_angle, double 
 EmissionProfile make_spread_profile(const Vec3d& normal, double spread);
 
 /// direction: unit, in the world, from the light to the lit point.
-double profile_factor(const EmissionProfile& profile, const Vec3d& direction);
+/// The plain part of a profile times a table.
+TableProfile with_table(const EmissionProfile& profile, std::shared_ptr<const DirectionTable> table,
+                        const glm::dmat3& to_table);
 
-struct ProfileRange {
-    double low, high;
-};
+double profile_factor(const EmissionProfile& profile, const Vec3d& direction);
 
 /// Bounds of the factor over the cap of directions within half_angle [0, π] of a unit direction.
 ProfileRange profile_range(const EmissionProfile& profile, const Vec3d& direction, double half_angle);

@@ -66,8 +66,8 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
                const Stopped& stopped);
     void build_rays(const CompiledScene* before, const Stopped& stopped);
     void find_light_groups();
-    void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
-              std::span<Rgb> passed) const override;
+    void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth, std::span<Rgb> passed,
+              std::span<Rgb> entered) const override;
 
     Vec3d origin_;
     std::unique_ptr<PlacedMeshes> placed_;

@@ -23,9 +23,10 @@ class SurfaceTransparency {
     SurfaceTransparency& operator=(const SurfaceTransparency&) = delete;
     virtual ~SurfaceTransparency() = default;
     /// Evaluates surfaces that shadow rays have met. depth: number of such surfaces that each ray has passed before;
-    /// passed: not negative.
+    /// passed: not negative. entered: the absorption [1/m] of the body that a ray enters there, minus it where the ray
+    /// leaves the body.
     virtual void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
-                      std::span<Rgb> passed) const = 0;
+                      std::span<Rgb> passed, std::span<Rgb> entered) const = 0;
 };
 
 /// A surface that the ray of this number meets.
@@ -57,7 +58,7 @@ class SceneRays {
     void visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
     /// Multiplies `visible` with the same of the surfaces alone that are not opaque. visit(ray, hit), unless it is
     /// null: for each such surface, from front to back, when `visible` is the share of light that gets from there to
-    /// the ray's origin.
+    /// the ray's origin, if no body absorbs it.
     void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible,
                        const SurfaceVisit& visit = {}) const;
 

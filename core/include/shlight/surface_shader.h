@@ -74,6 +74,8 @@ struct SurfaceShader {
     std::vector<ShadedAov> aovs;
     std::vector<ShadedRefraction> refractions;
     bool blocks_shadow_rays = false;  ///< those do not pass, and other rays do
+    /// [1/m], not negative, of the body that the mesh's front side bounds: of light, e^(-absorption · way) is left.
+    Rgb absorption{0};
 };
 
 /// The lobes of a Bsdf with colour 1; their weights are computed at each hit.

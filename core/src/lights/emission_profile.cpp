@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
@@ -79,6 +80,9 @@ struct Factor {
         return std::max(0.0, spread.tangent - tangent) * spread.scale;
     }
     double operator()(const TangentProfile& sun) const { return tangent_factor(glm::dot(sun.axis, direction)); }
+    double operator()(const TableProfile& own) const {
+        return own.table->at(own.to_table * direction) * std::visit(*this, own.plain);
+    }
 };
 
 struct Range {
@@ -101,6 +105,11 @@ struct Range {
         return {tangent_factor(std::cos(std::max(0.0, middle - half_angle))),
                 tangent_factor(std::cos(std::min(pi / 2, middle + half_angle)))};
     }
+    ProfileRange operator()(const TableProfile& own) const {
+        const ProfileRange plain = std::visit(*this, own.plain);
+        const ProfileRange listed = own.table->range(own.to_table * direction, half_angle);
+        return {plain.low * listed.low, plain.high * listed.high};
+    }
 };
 
 struct Scale {
@@ -117,6 +126,17 @@ struct Scale {
         return std::min(1.0, std::max(spread.half_angle, angle_between(direction, spread.normal)));
     }
     double operator()(const TangentProfile& /*sun*/) const { return 1; }
+    double operator()(const TableProfile& own) const {
+        return std::min(own.table->scale(own.to_table * direction), std::visit(*this, own.plain));
+    }
+};
+
+struct Plain {
+    PlainProfile operator()(const TableProfile& own) const { return own.plain; }
+    template <class Profile>
+    PlainProfile operator()(const Profile& own) const {
+        return own;
+    }
 };
 
 }  // namespace
@@ -158,6 +178,11 @@ EmissionProfile make_spread_profile(const Vec3d& normal, double spread) {
     }
     const double h = spread / 2;
     return SpreadProfile{glm::normalize(normal), h, std::tan(h), 1 / tangent_minus_angle(h)};
+}
+
+TableProfile with_table(const EmissionProfile& profile, std::shared_ptr<const DirectionTable> table,
+                        const glm::dmat3& to_table) {
+    return {std::move(table), to_table, std::visit(Plain{}, profile)};
 }
 
 double profile_factor(const EmissionProfile& profile, const Vec3d& direction) {

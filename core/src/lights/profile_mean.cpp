@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lights/profile_mean.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <variant>
 
 #include "lobes/material_lobes.h"
 #include "math/gauss_legendre.h"
@@ -16,6 +18,10 @@ constexpr std::array kPoints = {4, 6, 9, 13, 19, 28, 42, kMaxGaussPoints};
 /// crosses a patch.
 constexpr int kAgreements = 2;
 constexpr int kAgreementsOfRings = 1;
+/// A table has kinks between all its texels, so that rules converge slowly: the most points for one, and the least
+/// tolerance ÷ the largest factor.
+constexpr int kMostForTables = 19;
+constexpr double kToleranceOfTables = 1e-3;
 /// A lobe gets additional nodes if its density may exceed the light's by this factor.
 constexpr double kNarrowLobe = 8;
 /// A lobe narrower than this [rad] gets additional nodes even if rings exist: few are needed for a lobe within the
@@ -92,6 +98,8 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
     if (!(range().high - range().low > tolerance)) {
         return (range().low + range().high) / 2;
     }
+    const bool has_table = std::holds_alternative<TableProfile>(traits_of(seen_.light()).profile);
+    tolerance = has_table ? std::max(tolerance, kToleranceOfTables * range().high) : tolerance;
     const Vec3d view(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
     const bool narrow = sampler_.solid_angle() * largest_lobe_density(lobe, view) > kNarrowLobe;
     const double width = narrowest(lobe, cos_theta_o);
@@ -107,7 +115,8 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
         const double before = mean;
         mean = sums.even > 0 ? sums.lit / sums.even : range().low;
         agreements = agreements < 0 || !(std::abs(mean - before) <= tolerance) ? 0 : agreements + 1;
-        if (agreements == (has_rings_ && !reflection.narrow ? kAgreementsOfRings : kAgreements)) {
+        if (agreements == (has_rings_ && !reflection.narrow ? kAgreementsOfRings : kAgreements) ||
+            (has_table && points >= kMostForTables)) {
             break;
         }
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/surface_shader.h"
 
+#include <cmath>
+
 #include "base/checks.h"
 
 namespace shlight {
@@ -40,6 +42,11 @@ void check_surface_shader(const SurfaceShader& shader) {
     }
     for (const ShadedAov& aov : shader.aovs) {
         check("aov", aov.value, aov.is_color ? 3 : 1);
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        if (!(shader.absorption[channel] >= 0 && std::isfinite(shader.absorption[channel]))) {
+            reject("absorption must be finite and not negative");
+        }
     }
     check("emission", shader.emission, 3);
     check("transparency", shader.transparency, 3);

@@ -53,6 +53,11 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
         Segment segment = beginning;
         segment.ray = i;
         segment.whole = rays_[i].ray;
+        if (segments_.empty() || segments_.back().whole.origin != segment.whole.origin) {
+            segment.absorption = absorption_at(segment.whole);
+        } else {
+            segment.absorption = segments_.back().absorption;
+        }
         start(segment, rays_[i].ray);
     }
     while (!segments_.empty()) {
@@ -102,6 +107,7 @@ void CameraSurfaces::meet(const Sink& sink) {
             continue;
         }
         Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
+        absorb(end, distance - double{parts_[i].t_min});
         if (segment.is_broad && is_shaded(segment) && add_cell(end, sink)) {
             add_emission(end, sink);
         } else {
@@ -258,6 +264,7 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
                 Segment beyond = static_cast<const Segment&>(surface);
                 ++beyond.depth;
                 beyond.throughput = throughput;
+                beyond.absorption = surface.absorption_beyond;
                 start(beyond, behind(surface.whole, surface.hit));
             }
         }

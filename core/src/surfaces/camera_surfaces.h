@@ -115,6 +115,8 @@ class CameraSurfaces {
         bool diffused = false;                        ///< by a surface before
         std::optional<std::uint32_t> exit_lobe{};     ///< it ends where light enters a body for this lobe
         std::optional<std::uint32_t> light_set{};     ///< of the surface that has reflected it; see MeshUse
+        /// [1/m] of the bodies that it runs in, as far as they are known, and of those behind its end.
+        Rgb absorption{0}, absorption_beyond{0};
 
         bool sees_lights() const { return source != RaySource::scattered; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -133,7 +135,10 @@ class CameraSurfaces {
                     transmissions + (through ? 1 : 0),
                     is_drawn,
                     false,
-                    diffused || by == PathKind::diffuse};
+                    diffused || by == PathKind::diffuse,
+                    {},
+                    {},
+                    through ? absorption_beyond : absorption};
         }
         Segment from(const Material& material) const {
             Segment own = *this;
@@ -213,6 +218,10 @@ class CameraSurfaces {
     };
     void trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink, Hits& hits);
     void start(const Segment& segment, const Ray& part);
+    /// Dims a path by what bodies absorb on its last part, of this length.
+    void absorb(Surface& end, double length) const;
+    /// Absorption where a ray begins.
+    Rgb absorption_at(const Ray& ray) const;
     void meet(const Sink& sink);
     void leave_scene(const Segment& segment, const Sink& sink);
     /// The part of the picture that is left stays empty.

@@ -121,7 +121,7 @@ void CompiledScene::build_rays(const CompiledScene* before, const Stopped& stopp
 
 /// Runs the programs of surfaces that shadow rays meet.
 void CompiledScene::find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
-                         std::span<Rgb> passed) const {
+                         std::span<Rgb> passed, std::span<Rgb> entered) const {
     std::vector<ShadedPlace> places;
     std::vector<std::uint32_t> material, order(hits.size());
     for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -145,6 +145,9 @@ void CompiledScene::find(std::span<const Ray> rays, std::span<const RayHit> hits
         results.resize(program.result_count() * alike.size());
         placed_->run(program, own, alike, false, registers, results);
         for (std::size_t k = 0; k < alike.size(); ++k) {
+            const bool leaves =
+                own.shader->absorption != Rgb(0) && placed_->is_back(hits[numbers[k]], alike[k].at[0].towards_viewer);
+            entered[numbers[k]] = leaves ? -own.shader->absorption : own.shader->absorption;
             for (int channel = 0; channel < 3; ++channel) {
                 const float share = results[static_cast<std::size_t>(channel) * alike.size() + k];
                 const bool stops = own.shader->blocks_shadow_rays && (rays[numbers[k]].kinds & kShadowRay) != 0;

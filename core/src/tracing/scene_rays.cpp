@@ -6,6 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
 namespace shlight {
 namespace {
 
@@ -18,6 +21,23 @@ std::shared_ptr<const RayTracer> tracer_of(std::vector<TracedInstance> instances
         std::ranges::none_of(instances, [](const TracedInstance& own) { return own.tree != nullptr; });
     return is_empty ? nullptr : std::make_shared<const RayTracer>(std::move(instances), stopped);
 }
+
+/// This is what bodies take of a ray's light. It may begin inside a body: the ways from its origin to where it leaves
+/// bodies, less those to where it enters them, are the ways inside.
+struct Absorption {
+    Rgb inside{0};  // [1/m] of the bodies that the ray is in
+    Rgb depth{0};   // optical
+
+    void enter(const Rgb& body, float way) {
+        inside += body;
+        depth -= body * way;
+    }
+    /// The share of light that is left. Bodies without an end absorb nothing.
+    Rgb passed(float way) const {
+        const Rgb rest = std::isfinite(way) ? glm::max(inside, Rgb(0)) * way : Rgb(0);
+        return glm::exp(-glm::max(depth + rest, Rgb(0)));
+    }
+};
 
 }  // namespace
 
@@ -87,7 +107,8 @@ void SceneRays::transmittance(std::span<const Ray> rays, std::uint32_t transpare
         go_on(i, rays[i]);
     }
     std::vector<RayHit> hits;
-    std::vector<Rgb> passed;
+    std::vector<Rgb> passed, entered;
+    std::vector<Absorption> absorption;  // of each ray, or none: nothing absorbs
     for (std::uint32_t depth = 0; !active.empty(); ++depth) {
         hits.resize(active.size());
         transparent_->intersect(segments, hits);
@@ -103,15 +124,23 @@ void SceneRays::transmittance(std::span<const Ray> rays, std::uint32_t transpare
             }
         }
         passed.assign(met.size(), Rgb(0));
+        entered.assign(met.size(), Rgb(0));
         if (depth < transparent_bounces) {
-            transparency_->find(met_rays, met_hits, depth, passed);
+            transparency_->find(met_rays, met_hits, depth, passed, entered);
         }
         active.clear();
         segments.clear();
         for (std::size_t i = 0; i < met.size(); ++i) {
             visible[met[i]] *= passed[i];
+            if (entered[i] != Rgb(0)) {
+                absorption.resize(rays.size());
+                absorption[met[i]].enter(entered[i], met_hits[i].distance * glm::length(met_rays[i].direction));
+            }
             go_on(met[i], behind(met_rays[i], met_hits[i]));
         }
+    }
+    for (std::size_t i = 0; i < absorption.size(); ++i) {
+        visible[i] *= absorption[i].passed(rays[i].t_max * glm::length(rays[i].direction));
     }
 }
 

@@ -25,6 +25,7 @@ from shlight.nodes.metals import conductor, metallic
 from shlight.nodes.noises import musgrave, noise, wave
 from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.patterns import Bricks, bricks, magic
+from shlight.nodes.photometric import ies
 from shlight.nodes.principled import (
     glass,
     glossy,
@@ -34,7 +35,7 @@ from shlight.nodes.principled import (
     refraction,
     rising_lobes,
 )
-from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, scaled, translucent, transparent
+from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, translucent, transparent
 from shlight.nodes.skies import Sky, preetham
 from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.subsurface import subsurface
@@ -50,6 +51,7 @@ __all__ = [
     "Value",
     "Vector",
     "Voronoi",
+    "absorbing",
     "attribute",
     "backfacing",
     "barycentric",
@@ -69,6 +71,7 @@ __all__ = [
     "ggx",
     "glass",
     "glossy",
+    "ies",
     "image",
     "inputs",
     "lambert",

@@ -97,6 +97,7 @@ class Shader:
     aovs: Mapping[str, Value | Color] = field(default_factory=dict)  # see with_aovs
     refractions: tuple[Refraction, ...] = ()
     blocks_shadow_rays: bool = False  # True: light of lamps does not pass where other rays do
+    absorption: Color = field(default_factory=lambda: color(BLACK))  # see absorbing
 
     __array_ufunc__ = None  # an array of numpy times a shader is a shader
 
@@ -108,6 +109,7 @@ class Shader:
             {**self.aovs, **other.aovs},
             self.refractions + other.refractions,
             self.blocks_shadow_rays or other.blocks_shadow_rays,
+            color(self.absorption + other.absorption),
         )
 
     def __radd__(self, start: Literal[0]) -> Shader:  # what sum() begins with
@@ -117,8 +119,10 @@ class Shader:
         by = reflectance(factor, "factor")
         lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
         through = tuple(replace(own, weight=color(own.weight * by)) for own in self.refractions)
-        emission, transparency = color(self.emission * by), color(self.transparency * by)
-        return replace(self, lobes=lobes, emission=emission, transparency=transparency, refractions=through)
+        rest: dict[str, Any] = {
+            name: color(getattr(self, name) * by) for name in ("emission", "transparency", "absorption")
+        }
+        return replace(self, lobes=lobes, refractions=through, **rest)
 
     __rmul__ = __mul__
 
@@ -256,9 +260,11 @@ class Shader:
     @cached_property
     def _compiled(self) -> _core.SurfaceShader:
         camera, shadow, surface, rest = self._listed
-        attributes = camera.attributes
+        absorption = self.absorption.constant
+        if absorption is None:
+            raise ValueError("absorption must be the same everywhere inside a body")
         return _core.surface_shader(
-            self._program, *surface, shadow.program(), attributes, *rest, self.blocks_shadow_rays
+            self._program, *surface, shadow.program(), camera.attributes, *rest, self.blocks_shadow_rays, absorption
         )
 
 
@@ -339,6 +345,15 @@ def emission(radiance: Varying) -> Shader:
 def transparent(share: Varying = 1.0) -> Shader:
     """A surface that lets light go straight through."""
     return Shader(transparency=reflectance(share, "share"))
+
+
+def absorbing(absorption: Varying) -> Shader:
+    """Light fades inside the body that a mesh bounds, whose triangles are counter-clockwise seen from outside.
+
+    It is added to what its surface is: `glass(1.0, 0.0) + absorbing((0.1, 0.5, 2.0))`. absorption: [1/m], constant; of
+    light, exp(-absorption * way) is left. Raises ValueError naming the argument.
+    """
+    return Shader(absorption=reflectance(absorption, "absorption"))
 
 
 def mix(a: Shader, b: Shader, factor: Number) -> Shader:
