@@ -28,46 +28,6 @@ def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:
     studio.camera()
 
 
-@pytest.mark.parametrize(
-    ("distribution", "roughness"),
-    [
-        ("GGX", 0.4),
-        pytest.param("GGX", 0.6, marks=pytest.mark.slow),
-        pytest.param("MULTI_GGX", 0.4, marks=pytest.mark.slow),
-        ("MULTI_GGX", 0.7),
-    ],
-)
-def test_glossy(studio: Any, distribution: str, roughness: float) -> None:
-    shine_on(
-        studio,
-        studio.material(
-            "ShaderNodeBsdfAnisotropic", Color=(0.9, 0.6, 0.3), Roughness=roughness, distribution=distribution
-        ),
-        sharp=roughness < 0.5,
-    )
-    studio.compare()
-    assert studio.messages(most=99) == []
-
-
-@pytest.mark.parametrize(
-    "inputs",
-    [
-        {"Base_Color": (0.8, 0.3, 0.2)},
-        {"Base_Color": (0.2, 0.5, 0.8), "Roughness": 0.25, "Specular_IOR_Level": 1.0, "IOR": 1.8},
-        {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0, "Roughness": 0.5},
-        {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0, "Roughness": 0.4, "distribution": "GGX"},
-        {"Base_Color": (0.9, 0.2, 0.3), "Metallic": 0.4, "Roughness": 0.5, "Specular_Tint": (1.0, 1.0, 1.0)},
-        {"Base_Color": (0.5, 0.6, 0.3), "Specular_IOR_Level": 0.0},
-        {"Base_Color": (0.1, 0.1, 0.1), "Specular_Tint": (1.0, 0.5, 0.2), "Roughness": 0.3},
-    ],
-)
-def test_principled(studio: Any, inputs: dict[str, Any]) -> None:
-    sharp = inputs.get("Roughness", 0.5) < 0.5
-    shine_on(studio, studio.material("ShaderNodeBsdfPrincipled", **inputs), sharp=sharp)
-    studio.compare()
-    assert studio.messages(most=99) == []
-
-
 MIRRORS: list[tuple[str, dict[str, Any]]] = [
     ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "GGX"}),
     ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "MULTI_GGX"}),
