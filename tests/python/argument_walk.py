@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Calls public functions with each argument replaced by what a stranger may type, and says what came of it.
 
-Run as a script with the names of calls: one that ends the process is seen by whoever ran it.
+Run as a script with a step and the names of calls: one that ends the process is seen by whoever ran it.
 """
 
 from __future__ import annotations
 
 import contextlib
 import inspect
-import itertools
 import reprlib
 import sys
 import tempfile
@@ -431,14 +430,17 @@ def printable(value: Any) -> bool:
 
 def main() -> None:
     """Problems to standard output; to standard error what is tried, so that its last line is what ended the process."""
-    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for call in sys.argv[1:]:
-            for name, value in itertools.product(CALLS[call][1], WRONG):
-                shown = f"{call}({name}={reprlib.repr(value) if printable(value) else type(value)})"
-                print(shown, file=sys.stderr, flush=True)
-                problem = complaint(call, name, value)
-                if problem is not None:
-                    print(f"{shown}: {problem}")
+    step = int(sys.argv[1])
+    for call in sys.argv[2:]:
+        # A folder for each, so that none reads what another has written.
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            for number, name in enumerate(CALLS[call][1]):
+                for value in WRONG[number % step :: step]:
+                    shown = f"{call}({name}={reprlib.repr(value) if printable(value) else type(value)})"
+                    print(shown, file=sys.stderr, flush=True)
+                    problem = complaint(call, name, value)
+                    if problem is not None:
+                        print(f"{shown}: {problem}")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ import shlight
 from shlight import images
 from shlight_tools import methods
 
-PROCESSES = 8
+PROCESSES, THINNED = 4, 3
 
 
 def public_functions() -> Iterator[tuple[str, Any]]:
@@ -53,8 +53,11 @@ def test_the_walk_knows_every_function_and_argument() -> None:
 
 # Several in a process, whose start takes longer than most of them; the last line that it prints names the call.
 @pytest.mark.parametrize("first", range(PROCESSES))
-def test_any_argument_is_answered(first: int) -> None:
-    walk = [sys.executable, str(Path(argument_walk.__file__)), *list(argument_walk.CALLS)[first::PROCESSES]]
+@pytest.mark.parametrize("step", [THINNED, pytest.param(1, marks=pytest.mark.slow)])
+def test_any_argument_is_answered(first: int, step: int) -> None:
+    """Each argument gets one in `step` of the wrong values, and the next argument those that follow them."""
+    calls = list(argument_walk.CALLS)[first::PROCESSES]
+    walk = [sys.executable, str(Path(argument_walk.__file__)), str(step), *calls]
     done = subprocess.run(walk, capture_output=True, text=True, check=False, timeout=200)
     assert done.returncode == 0, done.stderr.splitlines()[-20:]
     assert not done.stdout

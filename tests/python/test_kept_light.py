@@ -79,17 +79,17 @@ def test_kept_light_is_as_good_as_light_gathered_anew() -> None:
         return shlight.render(scene, 32, 32, **settings, **options)["diffuse_indirect"].astype(np.float64)
 
     own, anew = [], []
-    for seed in range(12):
+    for seed in range(6):
         kept = shlight.KeptLight()
         own.append([indirect(way, seed=seed, kept_light=kept) for way in (0, 0.15, 0.35, 0.5)][-1])
         anew.append(indirect(0.5, seed=seed))
     shares = [a.mean() / b.mean() for a, b in zip(own, anew, strict=True)]
-    # A share differs from 1 by about 1 % from seed to seed, so that the mean has a standard error of 0.3 %.
-    np.testing.assert_allclose(np.mean(shares), 1, atol=0.008)
+    # A share differs from 1 by about 1 % from seed to seed, so that the mean has a standard error of 0.4 %.
+    np.testing.assert_allclose(np.mean(shares), 1, atol=0.01)
     expected = np.mean(anew, axis=0)
     errors = [np.mean([rel_mse(seen, expected) for seen in pictures]) for pictures in (own, anew)]
-    # Each picture that is gathered anew is a twelfth of what all are compared with, which takes a twelfth of its error.
-    assert errors[0] <= 1.25 * errors[1] * 12 / 11
+    # Each picture that is gathered anew is a sixth of what all are compared with, which takes a sixth of its error.
+    assert errors[0] <= 1.25 * errors[1] * 6 / 5
 
 
 def test_kept_light_does_not_flicker() -> None:

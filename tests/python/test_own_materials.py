@@ -351,7 +351,7 @@ def test_pickles_and_copies() -> None:
     light, _ = hemisphere(5)
     for bsdf in (
         Bsdf.from_function(ISOTROPIC, order=8, samples=8) * [1, 0.5, 0.2],
-        Bsdf.from_function(ANISOTROPIC, isotropic=False, samples=8) + Bsdf.lambert(0.1),
+        Bsdf.from_function(ANISOTROPIC, isotropic=False, order=8, samples=8) + Bsdf.lambert(0.1),
     ):
         for other in (pickle.loads(pickle.dumps(bsdf)), copy.deepcopy(bsdf)):
             np.testing.assert_array_equal(other.evaluate(light, [0, 0.6, 0.8]), bsdf.evaluate(light, [0, 0.6, 0.8]))
