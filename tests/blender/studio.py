@@ -197,6 +197,7 @@ class Studio:
         """A fresh world of one Background node, by default in Blender's grey; returns that node."""
         made = self.scene.world = bpy.data.worlds.new("World")
         made.use_nodes = True
+        made.cycles.sampling_method, made.cycles.sample_map_resolution = "MANUAL", 256  # a larger map takes Cycles long
         node = next(node for node in made.node_tree.nodes if node.type == "BACKGROUND")
         if color is not None:
             node.inputs["Color"].default_value = (*color, 1)

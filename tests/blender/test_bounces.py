@@ -24,7 +24,7 @@ def compare(studio: Any, samples: int = 1024, **bounds: float) -> None:
     studio.compare(**bounds)
 
 
-@pytest.mark.parametrize(("glossy", "transmission"), [(4, 12), (1, 1), (0, 2)])
+@pytest.mark.parametrize(("glossy", "transmission"), [(4, 12), pytest.param(1, 1, marks=pytest.mark.slow), (0, 2)])
 def test_depths_of_gloss_and_glass_are_those_of_cycles(studio: Any, glossy: int, transmission: int) -> None:
     white = studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8))
     glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(0.9, 1, 0.9), Roughness=0.0, IOR=1.4)
@@ -40,7 +40,7 @@ def test_depths_of_gloss_and_glass_are_those_of_cycles(studio: Any, glossy: int,
     compare(studio)
 
 
-@pytest.mark.parametrize("bounces", [0, 2])
+@pytest.mark.parametrize("bounces", [pytest.param(0, marks=pytest.mark.slow), 2])
 def test_translucent_surfaces_take_light_from_behind(studio: Any, bounces: int) -> None:
     """A sheet before a lamp and the sky, a smooth ball around another lamp, and a mix of both sides."""
     paper = studio.material("ShaderNodeBsdfTranslucent", "Paper", Color=(0.9, 0.6, 0.4))

@@ -73,7 +73,7 @@ def test_each_side_gives_its_own_light(
     turned = {"rotation_euler": (0.5, 1.2, 0.3), "scale": (width, 1, 1)}
     SHAPES[shape](studio, material, location=(0.2, 0.3, 0.9), **turned)
     studio.camera((1.5, -5, 3.5))
-    studio.resolution(64, 48)
+    studio.resolution(48, 36)
     studio.scene.shlight.noise_threshold = 2e-3  # little of a hollow is seen, by rays to all of it
     studio.compare()
     assert studio.messages(most=99) == []

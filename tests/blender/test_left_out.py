@@ -41,7 +41,7 @@ def field(studio: Any) -> None:
         ("camera", "ORTHO"),
         pytest.param("camera", "PERSP", marks=pytest.mark.slow),
         pytest.param("distance", "ORTHO", marks=pytest.mark.slow),
-        ("distance", "PERSP"),
+        pytest.param("distance", "PERSP", marks=pytest.mark.slow),
         pytest.param("camera distance", "ORTHO", marks=pytest.mark.slow),
         ("camera distance", "PERSP"),
     ],

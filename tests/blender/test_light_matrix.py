@@ -60,8 +60,7 @@ LAMPS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 QUICK = {
     "diffuse": {
-        "point", "point_disk", "point_small", "spot", "spot_small", "sun", "sun_small", "square", "spread", "disk",
-        "ellipse",
+        "point", "point_small", "spot_small", "sun", "spread", "disk", "ellipse",
     },
     "glossy": {"point_disk", "spot", "sun_small", "square"},
 }  # fmt: skip

@@ -25,7 +25,7 @@ GROUPS = ("key", "fill", "sky")
 
 def scene_with_groups(studio: Any) -> Any:
     scene = studio.scene
-    studio.resolution(64, 48)
+    studio.resolution(48, 36)
     matt = studio.material("ShaderNodeBsdfDiffuse", "Matt", Color=(0.6, 0.5, 0.3))
     glossy = studio.material("ShaderNodeBsdfGlossy", "Glossy", Color=(0.9, 0.7, 0.4), Roughness=0.5)
     for material, index in ((matt, 4), (glossy, 7)):
@@ -98,7 +98,7 @@ def relative_error(image: NDArray[np.float32], expected: NDArray[np.float32]) ->
 
 def test_passes_are_those_of_cycles(studio: Any) -> None:
     scene_with_groups(studio)
-    studio.scene.cycles.samples = 4096
+    studio.scene.cycles.samples = 2560
     (own, own_notes), (reference, notes) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
     for name in compat.DENOISING_LEFT_OUT:
         reference.pop(f"ViewLayer.{name}")
@@ -119,6 +119,7 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
     # Shares differ by the rays that find an edge; the world's and glossy direct light are Cycles' noise, which makes
     # half of the latter's error against 16384 samples.
     allowed = {name: 5e-3 if ".Crypto" in name or name.endswith("sky") else 1e-3 for name in worst}
+    allowed["ViewLayer.DiffDir"] = allowed["ViewLayer.Diffuse Direct"] = 2e-3
     allowed["ViewLayer.GlossDir"] = allowed["ViewLayer.Glossy Direct"] = 3e-3
     assert {name: error for name, error in worst.items() if not error <= allowed[name]} == {}
     keys = [key for key in notes if key.startswith("cryptomatte/") and not key.endswith("manifest")]
@@ -126,7 +127,11 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
     assert {key: own_notes[key] for key in keys} == {key: notes[key] for key in keys}
 
 
-def test_light_that_bounces_has_the_passes_of_cycles(studio: Any) -> None:
+@pytest.mark.parametrize(
+    ("width", "samples", "tolerance"), [(40, 128, 0.06), pytest.param(64, 1024, 0.02, marks=pytest.mark.slow)]
+)
+def test_light_that_bounces_has_the_passes_of_cycles(studio: Any, width: int, samples: int, tolerance: float) -> None:
+    """In small pictures few points find the light that bounces; light in a pass of another kind is more than that."""
     scene_with_groups(studio)
     mirror = studio.material("ShaderNodeBsdfGlossy", "Mirror", Color=(0.9, 0.9, 0.9), Roughness=0.0)
     studio.box((0.2, 2, 1.5), mirror, "Wall", location=(-2, 1, 0.75))
@@ -143,7 +148,8 @@ def test_light_that_bounces_has_the_passes_of_cycles(studio: Any) -> None:
     for lamp in (shown for shown in studio.scene.objects if shown.type == "LIGHT"):
         lamp.visible_glossy = lamp.visible_transmission = False
     cycles, scene = studio.scene.cycles, studio.scene
-    cycles.samples, scene.shlight.max_bounces = 1024, 2
+    studio.resolution(width, 3 * width // 4)
+    cycles.samples, scene.shlight.max_bounces = samples, 2
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 2
     cycles.caustics_reflective = True
     (own, _), (reference, _) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
@@ -155,7 +161,7 @@ def test_light_that_bounces_has_the_passes_of_cycles(studio: Any) -> None:
     names += [f"Combined_{group}" for group in GROUPS]
     means = {name: [float(found[f"ViewLayer.{name}"].mean()) for found in (own, reference)] for name in names}
     print({name: f"{mine:.5f} {theirs:.5f}" for name, (mine, theirs) in means.items()})
-    assert {name: both for name, both in means.items() if abs(both[0] - both[1]) > 0.02 * both[1]} == {}
+    assert {name: both for name, both in means.items() if abs(both[0] - both[1]) > tolerance * both[1]} == {}
 
 
 def test_places_are_exact_where_cycles_looks_through_the_middles_too(studio: Any) -> None:

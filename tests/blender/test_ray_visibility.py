@@ -31,12 +31,12 @@ def stage(studio: Any, bounces: int) -> dict[str, Any]:
     studio.plain_world((0.1, 0.15, 0.2))
     studio.camera((1.5, -7, 2.5), (0, 0, 0.6))
     studio.scene.shlight.max_bounces = bounces
-    studio.resolution(48, 32)
-    use_cycles(studio.scene, 2048, 0, bounces_of(studio.scene))
+    studio.resolution(36, 24)
+    use_cycles(studio.scene, 1024, 0, bounces_of(studio.scene))
     return made
 
 
-@pytest.mark.parametrize("bounces", [0, 3])
+@pytest.mark.parametrize("bounces", [pytest.param(0, marks=pytest.mark.slow), 3])
 def test_objects_are_hidden_from_kinds_of_rays(studio: Any, bounces: int) -> None:
     for kind, box in stage(studio, bounces).items():
         setattr(box, f"visible_{kind}", False)

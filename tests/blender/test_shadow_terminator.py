@@ -43,14 +43,14 @@ DEFAULT, FAR, SHADING = (0.1, 0.0), (0.5, 0.0), (0.0, 0.3)
     ("light", "shader", "offsets"),
     [
         ("area", "diffuse", DEFAULT),
-        ("large area", "glossy", FAR),
+        pytest.param("large area", "glossy", FAR, marks=pytest.mark.slow),
         ("point", "diffuse", FAR),
-        ("sun", "diffuse", DEFAULT),
+        pytest.param("sun", "diffuse", DEFAULT, marks=pytest.mark.slow),
         ("even world", "diffuse", FAR),
         ("uneven world", "diffuse", FAR),
         ("area", "glossy", SHADING),
         pytest.param("point", "diffuse", SHADING, marks=pytest.mark.slow),
-        ("even world", "glossy", SHADING),
+        pytest.param("even world", "glossy", SHADING, marks=pytest.mark.slow),
         pytest.param("uneven world", "diffuse", SHADING, marks=pytest.mark.slow),
     ],
 )
@@ -64,6 +64,7 @@ def test_a_coarse_ball_and_a_roof(studio: Any, light: str, shader: str, offsets:
     studio.terminator(roof, *offsets)
     studio.camera((0.8, -5, 1.5), (0.8, 0, 0))
     LIGHTS[light](studio)
+    studio.resolution(32, 24)
     studio.scene.cycles.samples = 1024
     studio.scene.shlight.noise_threshold = 0.003
     studio.compare(mean=5e-3, error=1e-3)

@@ -37,7 +37,7 @@ def add_sky(studio: Any, kind: str = WITH_SUN[-1], strength: float = 0.1, **prop
 
 def looks_as_in_cycles(studio: Any) -> None:
     """All around, where it is not dark: all but few pixels, in which light changes, within 1 %; and the mean."""
-    studio.all_around(256)
+    studio.all_around(128)
     studio.scene.shlight.pixel_samples, studio.scene.cycles.samples = 16, 128
     studio.scene.world.cycles.sampling_method = "NONE"  # which takes Cycles time to prepare
     image, reference = (studio.render(engine)[..., :3] for engine in ("SHLIGHT", "CYCLES"))
@@ -52,7 +52,7 @@ def looks_as_in_cycles(studio: Any) -> None:
 @pytest.mark.parametrize(
     "air",
     [
-        {},
+        pytest.param({}, marks=pytest.mark.slow),
         {"sun_elevation": math.radians(95.0)},
         pytest.param({"sun_elevation": math.radians(-2.0)}, marks=pytest.mark.slow),
         {"altitude": 3000.0, "air_density": 2.0, "dust": 4.0, "ozone_density": 3.0},
@@ -64,7 +64,9 @@ def test_scattered_light(studio: Any, kind: str, air: dict[str, float]) -> None:
     assert studio.messages() == []
 
 
-@pytest.mark.parametrize(("sun", "turbidity"), [((0.6, 0.3, 0.5), 2.2), ((-0.7, 0.7, 0.05), 6.0)])
+@pytest.mark.parametrize(
+    ("sun", "turbidity"), [pytest.param((0.6, 0.3, 0.5), 2.2, marks=pytest.mark.slow), ((-0.7, 0.7, 0.05), 6.0)]
+)
 def test_the_sky_of_preetham(studio: Any, sun: tuple[float, float, float], turbidity: float) -> None:
     add_sky(studio, "PREETHAM", sun_direction=sun, turbidity=turbidity)
     looks_as_in_cycles(studio)
@@ -85,7 +87,7 @@ def test_the_sky_of_hosek_is_named_and_about_as_bright(studio: Any) -> None:
     "sun",
     [
         {},
-        {"sun_size": math.radians(0.05)},
+        pytest.param({"sun_size": math.radians(0.05)}, marks=pytest.mark.slow),
         {"sun_size": math.radians(4.0)},
         pytest.param({"sun_size": math.radians(8.0)}, marks=pytest.mark.slow),
         {"sun_elevation": math.radians(0.1), "sun_intensity": 3.0},

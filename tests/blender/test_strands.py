@@ -30,7 +30,7 @@ def hairy(studio: Any, material: Any = None, **settings: Any) -> Any:
         setattr(own, name, value)
     studio.area(150, (1.5, -1, 3), size=0.8)
     studio.camera((1.5, -4, 2.5), (0, 0, 0.8))
-    studio.resolution(64, 48)
+    studio.resolution(40, 30)
     return ball
 
 
@@ -73,7 +73,7 @@ def cloud(studio: Any, material: Any, **place: Any) -> Any:
     return made
 
 
-@pytest.mark.parametrize("shape", ["RIBBONS", "THICK"])
+@pytest.mark.parametrize("shape", ["RIBBONS", pytest.param("THICK", marks=pytest.mark.slow)])
 def test_hair_of_particles(studio: Any, shape: str) -> None:
     hairy(studio)
     studio.scene.cycles_curves.shape = shape
@@ -81,13 +81,13 @@ def test_hair_of_particles(studio: Any, shape: str) -> None:
     assert studio.messages() == []
 
 
-@pytest.mark.parametrize("shape", ["RIBBONS", "THICK"])
+@pytest.mark.parametrize("shape", [pytest.param("RIBBONS", marks=pytest.mark.slow), "THICK"])
 def test_hair_curves(studio: Any, shape: str) -> None:
     studio.lit_floor()
     gray = studio.material("ShaderNodeBsdfPrincipled", Base_Color=(0.7, 0.4, 0.2), Roughness=0.4)
     strand_curves(studio, [2, 3, 7, 4, 12, 5] * 20, gray, scale=(0.9, 0.9, 1.2), rotation_euler=(0.1, 0, 0.4))
     studio.scene.cycles_curves.shape = shape
-    studio.resolution(64, 48)
+    studio.resolution(40, 30)
     studio.compare()
     assert studio.messages() == []
 
@@ -99,7 +99,7 @@ def test_point_clouds(studio: Any) -> None:
     studio.link("Other", first.data, (1.5, 1.5, 0), scale=(0.7, 0.7, 0.7)).modifiers.new(
         "Nodes", "NODES"
     ).node_group = first.modifiers[0].node_group
-    studio.resolution(64, 48)
+    studio.resolution(40, 30)
     studio.compare()
     assert studio.messages() == []
 
@@ -133,6 +133,7 @@ def test_what_hair_knows_of_itself(studio: Any, kind: str, output: str) -> None:
         studio.camera()
     for lamp in [own for own in studio.scene.objects if own.type == "LIGHT"]:
         bpy.data.objects.remove(lamp)
+    studio.resolution(64, 48)
     studio.scene.cycles.samples = 64
     for plane in [own for own in studio.scene.objects if own.type == "MESH"]:
         plane.data.materials[0] = studio.material("ShaderNodeEmission", Strength=0.0)

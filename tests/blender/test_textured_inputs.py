@@ -70,4 +70,5 @@ def test_a_picture_at_an_input(studio: Any, name: str, distribution: str) -> Non
         loop.uv = place
     studio.plane(location=(0, 0, -0.6))
     studio.camera()
+    studio.resolution(36, 27)
     studio.compare(mean=5e-3, error=2e-3)
