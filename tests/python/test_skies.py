@@ -131,7 +131,13 @@ def test_bad_skies_are_refused(name: str, value: Any) -> None:
         nodes.Sky(**{name: value})
 
 
+@pytest.mark.parametrize("model", [nodes.preetham, nodes.hosek_wilkie])
 @pytest.mark.parametrize(("sun", "turbidity", "name"), [((0, 0, 0), 2.0, "sun"), ((0, 0, 1), 0.5, "turbidity")])
-def test_bad_arguments_of_preetham_are_refused(sun: Any, turbidity: float, name: str) -> None:
+def test_bad_arguments_of_analytic_skies_are_refused(model: Any, sun: Any, turbidity: float, name: str) -> None:
     with pytest.raises(ValueError, match=name):
-        nodes.preetham(nodes.position(), sun, turbidity)
+        model(nodes.position(), sun, turbidity)
+
+
+def test_bad_grounds_are_refused() -> None:
+    with pytest.raises(ValueError, match="ground_albedo"):
+        nodes.hosek_wilkie(nodes.position(), (0, 0, 1), 2.0, ground_albedo=1.5)

@@ -23,6 +23,7 @@ from ..report import Effect, ExportReport
 from .displacement import Displacement, displaced
 from .emission import VaryingEmission, of_both_sides
 from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin
+from .settings import world_of
 from .shaders import NODES, positive
 from .volume_nodes import filled
 
@@ -175,7 +176,8 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
     shader, displacement = displaced(shader, material, output.inputs["Displacement"], reader)
     if not lets_light_through(material):
         graph = surroundings.depsgraph
-        if shader.transparency.constant != BLACK and graph is not None and not _is_even(graph.scene.world):
+        world = None if graph is None else world_of(graph.scene, graph.view_layer)
+        if shader.transparency.constant != BLACK and not _is_even(world):
             text = "its Transparent Shadows are off; of the world's light another part passes it in Cycles"
             report.add(place, text, Effect.LIGHT)
         shader = replace(shader, blocks_shadow_rays=True)

@@ -25,9 +25,9 @@ from .linking import Linking
 from .meshes import SceneMeshes
 from .nodes import Surroundings
 from .seen_objects import Culling, culling_of, shares_of_picture
-from .settings import report_unsupported_settings
+from .settings import report_unsupported_settings, world_of
 from .strands import CURVES, HAIR, POINT_CLOUD, hair_systems
-from .world import SceneWorld, world_of
+from .world import SceneWorld
 
 # Called with what is being done while time passes; False: stop it.
 Waiting = Callable[[str], bool]

@@ -105,3 +105,9 @@ def _passes_not_written(view_layer: Any) -> list[str]:
     )
     passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
     return passes + list(DENOISING_LEFT_OUT if stores_denoising_data(view_layer) else ())
+
+
+def world_of(scene: Any, view_layer: Any) -> Any:
+    """The world of a view layer, which may override the scene's or have none."""
+    world = getattr(view_layer, "world_override", None) or scene.world
+    return world if view_layer.use_sky else None

@@ -24,6 +24,7 @@ from ..report import Effect, ExportReport
 from .emission import VaryingEmission
 from .images import BRIGHTEST, linear_pixels
 from .nodes import NodeInputs, Origin, ReadNode, Surroundings, TreeReader, all_nodes, node_name, origin
+from .settings import world_of
 from .shaders import NODES, SHADERS, emission
 from .sky_nodes import MODELS, sky_of, sky_texture
 from .world_picture import Sun, picture, sun_of
@@ -137,12 +138,6 @@ class SceneWorld:
         """Adds the discs of the world's sky to the scene's lights."""
         for sun in self._suns:
             self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._visible, group=self._group)
-
-
-def world_of(scene: Any, view_layer: Any) -> Any:
-    """The world of a view layer, which may override the scene's or have none."""
-    world = getattr(view_layer, "world_override", None) or scene.world
-    return world if view_layer.use_sky else None
 
 
 def _read_world(world: Any, width: int, around: Surroundings, report: ExportReport) -> World:

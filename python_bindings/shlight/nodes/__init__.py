@@ -36,7 +36,7 @@ from shlight.nodes.principled import (
     rising_lobes,
 )
 from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, translucent, transparent
-from shlight.nodes.skies import Sky, preetham
+from shlight.nodes.skies import Sky, hosek_wilkie, preetham
 from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.subsurface import subsurface
 from shlight.nodes.textures import image
@@ -71,6 +71,7 @@ __all__ = [
     "ggx",
     "glass",
     "glossy",
+    "hosek_wilkie",
     "ies",
     "image",
     "inputs",
