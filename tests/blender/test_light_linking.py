@@ -92,7 +92,8 @@ def test_many_lights_with_links_of_their_own(studio: Any) -> None:
             state = "EXCLUDE" if (i + shift) % 3 == 0 else "INCLUDE"
             own = [light] if state == "INCLUDE" and light.type == "MESH" and shift else []
             collection(name, light, [objects[names[(i + shift + j) % 5]] for j in range(3)] + own, state)
-    studio.compare(mean=5e-3, error=6e-3)
+    # Cycles draws one of the lights: the rest is its noise.
+    studio.compare(mean=5e-3, error=1e-2)
     assert studio.messages(most=99) == []
 
 
