@@ -207,7 +207,7 @@ def points_of(skies: dict[int, list[Sky]], channel: int, others: list[Array]) ->
 
 
 def scaled(points: Array, factors: Array) -> Array:
-    """With factors (turbidities, 2) moved from r to the linear numbers of a channel."""
+    """The points of a channel; factors (turbidities, 2) are moved from r to its linear numbers."""
     moved = points.copy()
     moved[:, :, LINEAR] *= factors[..., None, None]
     moved[:, :, R] /= factors[..., None]
