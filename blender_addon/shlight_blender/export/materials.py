@@ -22,9 +22,9 @@ from ..names import name_of
 from ..report import Effect, ExportReport
 from .displacement import Displacement, displaced
 from .emission import VaryingEmission, of_both_sides
-from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin
+from .nodes import RGB, NodeInputs, Surroundings, TreeReader, origin, positive
 from .settings import world_of
-from .shaders import NODES, positive
+from .shaders import NODES
 from .volume_nodes import filled
 
 

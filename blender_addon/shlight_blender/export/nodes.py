@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from shlight import nodes
 from shlight.nodes import Color, Shader, Value, Vector
-from shlight.nodes.values import Varying, color, number, vector
+from shlight.nodes.values import Varying, color, maximum, number, vector
 
 from ..names import name_of
 from ..passes import PassWishes
@@ -327,3 +327,8 @@ def own_value(socket: Any) -> Expression:
         return number(float(value))
     kind = Color if socket.type == "RGBA" else Vector
     return kind(*(float(component) for component in value[:3]))
+
+
+def positive(c: Vector) -> Color:
+    """A colour without what is negative of it."""
+    return Color(*(maximum(component, 0.0) for component in c))

@@ -20,7 +20,7 @@ from ..compat import (
 from ..report import Effect
 from .displacement import DISPLACEMENT_NODES
 from .input_nodes import INPUT_NODES, around, fresnel_of
-from .nodes import NodeInputs, ReadNode, own_value
+from .nodes import NodeInputs, ReadNode, own_value, positive
 from .noise_nodes import NOISE_NODES
 from .texture_nodes import TEXTURE_NODES
 from .value_nodes import VALUE_NODES
@@ -74,7 +74,7 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     if inputs.node.distribution == "MULTI_GGX":
         text = "distribution MULTI_GGX is not supported in this version of Blender; GGX is used"
         inputs.remark(text, Effect.SLIGHT)
-    base = Color(*(maximum(c, 0.0) for c in inputs.color("Base Color")))
+    base = positive(inputs.color("Base Color"))
     metallic = clamp(inputs.number("Metallic"))
     roughness = clamp(inputs.number("Roughness"))
     specular = maximum(inputs.number("Specular"), 0.0)
@@ -160,11 +160,6 @@ def _sheen(inputs: NodeInputs) -> Shader:
     made = nodes.microfibre if getattr(inputs.node, "distribution", "") == "MICROFIBER" else nodes.velvet
     width = inputs.number("Sigma" if inputs.node.type == "BSDF_VELVET" else "Roughness")
     return made(inputs.color("Color"), width, at=inputs.linked_vector("Normal"))
-
-
-def positive(c: nodes.Vector) -> Color:
-    """A colour without what is negative of it."""
-    return Color(*(maximum(component, 0.0) for component in c))
 
 
 def _diffuse(inputs: NodeInputs) -> Shader:

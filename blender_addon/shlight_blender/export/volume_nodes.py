@@ -6,12 +6,12 @@ from __future__ import annotations
 from typing import Any
 
 from shlight import nodes
-from shlight.nodes import Color, Shader, Value, Vector
+from shlight.nodes import Shader, Value, Vector
 from shlight.nodes.shader import BLACK
 from shlight.nodes.values import maximum, number, sqrt, vector
 
 from ..report import Effect
-from .nodes import NodeInputs, ReadNode, TreeReader, origin
+from .nodes import NodeInputs, ReadNode, TreeReader, origin, positive
 
 
 def _remark_rest(inputs: NodeInputs, scattered: Vector, glow: Vector) -> None:
@@ -22,12 +22,8 @@ def _remark_rest(inputs: NodeInputs, scattered: Vector, glow: Vector) -> None:
         inputs.remark("its emission is not supported; left out", Effect.LIGHT)
 
 
-def _positive(c: Vector) -> Color:
-    return Color(*(maximum(component, 0.0) for component in c))
-
-
 def _absorbing(absorption: Vector, density: Value) -> Shader:
-    return nodes.absorbing(_positive(absorption) * maximum(density, 0.0))
+    return nodes.absorbing(positive(absorption) * maximum(density, 0.0))
 
 
 def _scatter(inputs: NodeInputs) -> Shader:
@@ -41,7 +37,7 @@ def _principled(inputs: NodeInputs) -> Shader:
         inputs, scattered, Vector(inputs.number("Emission Strength"), inputs.number("Blackbody Intensity"), 0.0)
     )
     kept = Vector(*(sqrt(c) for c in inputs.color("Absorption Color")))
-    return _absorbing(_positive(1.0 - scattered) * _positive(1.0 - kept), inputs.number("Density"))
+    return _absorbing(positive(1.0 - scattered) * positive(1.0 - kept), inputs.number("Density"))
 
 
 def _coefficients(inputs: NodeInputs) -> Shader:

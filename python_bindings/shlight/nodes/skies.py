@@ -77,7 +77,7 @@ def preetham(towards: Vector, sun: Any, turbidity: float) -> Color:
     return _rgb(first / second * y, y, (1.0 - first - second) / second * y)
 
 
-# shlight_tools.hosek_wilkie measures it: see there, and there for the order.
+# shlight_tools.hosek_wilkie measures it, and tells what the numbers are.
 KEPT_HOSEK = Path(__file__).with_name("hosek_wilkie.npz")
 HOSEK_DEGREE = 5
 
