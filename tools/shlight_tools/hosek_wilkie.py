@@ -15,17 +15,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from functools import cache
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from shlight.images import read_exr
 from shlight.nodes.skies import HORIZON, HOSEK_DEGREE, KEPT_HOSEK, hosek_numbers
 from shlight.nodes.spectra import TO_REC709
+
+from .exact_pixels import empty_scene, picture
 
 Array = NDArray[np.float64]
 
@@ -49,7 +48,7 @@ class Sky:
         around = 2 * math.pi * ((np.arange(WIDTH // 2) + 0.5) / WIDTH - 0.5)[None]  # to one side of the sun
         cosine = np.cos(latitude) * np.cos(around) * math.cos(self.elevation)
         cosine = np.clip(cosine + np.sin(latitude) * math.sin(self.elevation), -1, 1)
-        rgb = picture(turbidity, albedo, self.elevation)[:, : WIDTH // 2]
+        rgb = sky_picture(turbidity, albedo, self.elevation)[:, : WIDTH // 2]
         seen = (rgb > 0).all(axis=-1)
         self.xyz = (rgb @ np.linalg.inv(TO_REC709).T)[seen]
         self.cosine = cosine[seen]
@@ -62,15 +61,7 @@ class Sky:
 
 @cache
 def _scene() -> tuple[bpy.types.Scene, bpy.types.Node]:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.preferences.addon_enable(module="cycles")
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_depth = "32"
-    scene.cycles.samples, scene.cycles.use_adaptive_sampling, scene.cycles.use_denoising = 1, False, False
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    scene = empty_scene(WIDTH, HEIGHT)
     camera = bpy.data.cameras.new("Around")
     camera.type, camera.panorama_type = "PANO", "EQUIRECTANGULAR"
     scene.camera = bpy.data.objects.new("Around", camera)
@@ -86,15 +77,12 @@ def _scene() -> tuple[bpy.types.Scene, bpy.types.Node]:
     return scene, node
 
 
-def picture(turbidity: float, albedo: float, elevation: float) -> Array:
+def sky_picture(turbidity: float, albedo: float, elevation: float) -> Array:
     """All directions (HEIGHT, WIDTH, 3) around; the sun is in the middle column."""
     scene, node = _scene()
     node.turbidity, node.ground_albedo = turbidity, albedo
     node.sun_direction = (0.0, math.cos(elevation), math.sin(elevation))
-    with TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder) / "sky.exr")
-        bpy.ops.render.render(write_still=True)
-        return read_exr(scene.render.filepath)[..., :3].astype(np.float64)
+    return picture(scene)
 
 
 def radiance(v: Array, sky: Sky) -> tuple[Array, Array]:

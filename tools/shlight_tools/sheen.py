@@ -11,8 +11,6 @@ lights without extent, whose pictures have no noise, tell them.
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import bpy
@@ -20,8 +18,9 @@ import numpy as np
 from mathutils import Vector
 from numpy.typing import NDArray
 
-from shlight.images import read_exr
 from shlight.nodes.energy import KEPT_SHEEN
+
+from .exact_pixels import empty_scene, picture
 
 Array = NDArray[np.float64]
 
@@ -35,17 +34,8 @@ LIGHTS = [(z, math.radians(azimuth)) for z in (0.97, 0.8, 0.55, 0.3, 0.12, 0.04)
 
 def build_scene() -> Any:
     """A tile for each cosine (rows) and roughness, one in each pixel; returns the lamp."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.preferences.addon_enable(module="cycles")
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.render.resolution_x = scene.render.resolution_y = STEPS
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_depth = "32"
-    cycles = scene.cycles
-    cycles.samples, cycles.max_bounces, cycles.light_sampling_threshold = 1, 0, 0.0
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.pixel_filter_type, cycles.filter_width = "BOX", 0.01
+    scene = empty_scene(STEPS, STEPS)
+    scene.cycles.max_bounces, scene.cycles.light_sampling_threshold = 0, 0.0
 
     material = bpy.data.materials.new("Fibres")
     material.use_nodes = True
@@ -85,13 +75,10 @@ def pictures() -> tuple[Array, Array]:
     lamp = build_scene()
     directions = [(math.sqrt(1 - z * z) * math.cos(a), math.sqrt(1 - z * z) * math.sin(a), z) for z, a in LIGHTS]
     images = []
-    with TemporaryDirectory() as folder:
-        bpy.context.scene.render.filepath = str(Path(folder) / "tiles.exr")
-        for direction in directions:
-            lamp.rotation_euler = Vector(direction).to_track_quat("Z", "Y").to_euler()
-            bpy.ops.render.render(write_still=True)
-            images.append(read_exr(bpy.context.scene.render.filepath)[::-1, :, 0] / math.pi)
-    return np.array(images, np.float64), np.array(directions)
+    for direction in directions:
+        lamp.rotation_euler = Vector(direction).to_track_quat("Z", "Y").to_euler()
+        images.append(picture(bpy.context.scene)[::-1, :, 0] / math.pi)
+    return np.array(images), np.array(directions)
 
 
 def solved(reflected: Array, lights: Array) -> Array:
