@@ -268,6 +268,10 @@ constexpr std::array<std::pair<std::string_view, RayKind>, 5> kRayKinds = {
     {"transmission", kTransmissionRay},
     {"shadow", kShadowRay}};
 
+bool is_collection(const py::object& given) {
+    return py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given) || py::isinstance<py::anyset>(given);
+}
+
 /// The bits of kinds by their names.
 std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
     const auto refuse = [&](const py::handle& given) {
@@ -277,8 +281,7 @@ std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
                                                                     : std::string(Py_TYPE(given.ptr())->tp_name)));
     };
     const bool is_one = py::isinstance<py::str>(names);
-    if (!is_one && !py::isinstance<py::list>(names) && !py::isinstance<py::tuple>(names) &&
-        !py::isinstance<py::anyset>(names)) {
+    if (!is_one && !is_collection(names)) {
         refuse(names);
     }
     std::uint32_t kinds = 0;
@@ -296,8 +299,7 @@ std::uint32_t ray_kinds_from(const char* name, const py::object& names) {
 
 /// Bits of the sets with these numbers, which are below `count`.
 std::uint64_t set_bits(const char* name, const py::object& numbers, std::uint32_t count) {
-    if (!py::isinstance<py::list>(numbers) && !py::isinstance<py::tuple>(numbers) &&
-        !py::isinstance<py::anyset>(numbers)) {
+    if (!is_collection(numbers)) {
         throw std::invalid_argument(std::string(name) + " must be a list, tuple or set of integers, or None");
     }
     std::uint64_t bits = 0;

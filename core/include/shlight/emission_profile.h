@@ -79,11 +79,11 @@ SpotProfile make_spot_profile(const glm::dmat3& axes, double spot_angle, double 
 /// Throws std::invalid_argument naming the argument: a spread outside (0, π].
 EmissionProfile make_spread_profile(const Vec3d& normal, double spread);
 
-/// direction: unit, in the world, from the light to the lit point.
 /// The plain part of a profile times a table.
 TableProfile with_table(const EmissionProfile& profile, std::shared_ptr<const DirectionTable> table,
                         const glm::dmat3& to_table);
 
+/// direction: unit, in the world, from the light to the lit point.
 double profile_factor(const EmissionProfile& profile, const Vec3d& direction);
 
 /// Bounds of the factor over the cap of directions within half_angle [0, π] of a unit direction.

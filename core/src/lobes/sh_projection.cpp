@@ -17,7 +17,7 @@ namespace shlight {
 namespace {
 
 /// Number of lobes that are kept, some 1 MB each, and of anisotropic ones of up to 26 MB. A picture of roughness asks
-/// for up to 38 widths of each Fresnel factor.
+/// for up to 37 widths of each Fresnel factor.
 constexpr std::size_t kRecentLobes = 128, kRecentAnisotropicLobes = 12;
 /// For moments within 1e-4 of a lobe's albedo, except for lobes at the horizon that are narrower than a hundredth of
 /// it.

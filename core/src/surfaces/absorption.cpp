@@ -33,13 +33,17 @@ void CameraSurfaces::absorb(Surface& end, double length) const {
     }
 }
 
+bool CameraSurfaces::has_absorbing(std::span<const Material> materials) {
+    return std::ranges::any_of(materials, [](const Material& own) { return absorption_of(own) != Rgb(0); });
+}
+
 /// Returns that of the bodies which the ray leaves more often than it enters them.
 Rgb CameraSurfaces::absorption_at(const Ray& ray) const {
     Rgb sum(0);
-    const std::span<const Material> materials = scene_->materials();
-    if (std::ranges::all_of(materials, [](const Material& own) { return absorption_of(own) == Rgb(0); })) {
+    if (!has_bodies_) {
         return sum;
     }
+    const std::span<const Material> materials = scene_->materials();
     Ray rest = ray;
     rest.kinds = kAllRays;
     const Vec3d towards_viewer = -glm::normalize(Vec3d(ray.direction));

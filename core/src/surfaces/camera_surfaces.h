@@ -86,7 +86,7 @@ class CameraSurfaces {
     /// transparent_bounces: as Cycles counts them, a camera ray passes through one surface more, and of the next one
     /// it sees the emission alone.
     CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials, const PathSettings& settings)
-        : scene_(&scene), materials_(materials), settings_(settings) {}
+        : scene_(&scene), materials_(materials), settings_(settings), has_bodies_(has_absorbing(scene.materials())) {}
 
     void follow(const PathSettings& settings) { settings_ = settings; }
     /// rays: those of a pixel, rays_per_pixel, follow each other. neighbours: of each ray, or none if no program takes
@@ -220,6 +220,8 @@ class CameraSurfaces {
     void start(const Segment& segment, const Ray& part);
     /// Dims a path by what bodies absorb on its last part, of this length.
     void absorb(Surface& end, double length) const;
+    /// Whether some material absorbs light inside a body.
+    static bool has_absorbing(std::span<const Material> materials);
     /// Absorption where a ray begins.
     Rgb absorption_at(const Ray& ray) const;
     void meet(const Sink& sink);
@@ -314,6 +316,7 @@ class CameraSurfaces {
     const CompiledScene* scene_;
     std::span<const MaterialLobes> materials_;
     PathSettings settings_;
+    bool has_bodies_;                  // that absorb light
     std::span<const CameraRay> rays_;  // of the last call
     std::uint64_t hit_count_ = 0, mirror_count_ = 0;
     std::vector<Segment> segments_;
