@@ -11,7 +11,7 @@ import math
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import bpy
 import numpy as np
@@ -298,19 +298,59 @@ def displacement_method(material: Any) -> str:
     return str(getattr(owner, "displacement_method", "BUMP"))
 
 
-def is_subdivided_adaptively(shown: Any, scene: Any) -> bool:
-    """Whether Cycles divides an object's mesh by what the camera sees of it.
+class Dicing(NamedTuple):
+    """How Cycles divides a mesh by what the camera sees of it, see export/dicing.py."""
+
+    length: float  # of the edges that are wanted: in pixels, or in the frame of the object
+    in_pixels: bool
+    curved: bool  # to the limit of Catmull and Clark's subdivision
+    levels: int  # how often edges are halved at most
+    offscreen: float  # how many times as long edges are at a picture's half-diagonal beside it, or thereabouts
+
+
+def is_preview(depsgraph: Any) -> bool:
+    """Whether a depsgraph has the settings of viewports, not those of renders."""
+    return bool(depsgraph.mode == "VIEWPORT")
+
+
+def dicing_settings(depsgraph: Any) -> tuple[float, int, float, bool]:
+    """Cycles' settings of all dicing: length, levels, length beside the picture, whether features are experimental."""
+    cycles = getattr(depsgraph.scene_eval, "cycles", None)  # its add-on may be off
+    rate = "preview_dicing_rate" if is_preview(depsgraph) else "dicing_rate"
+    return (
+        getattr(cycles, rate, 1.0),
+        getattr(cycles, "max_subdivisions", 12),
+        getattr(cycles, "offscreen_dicing_scale", 4.0),
+        getattr(cycles, "feature_set", "") == "EXPERIMENTAL",
+    )
+
+
+def dicing_of(shown: Any, depsgraph: Any) -> Dicing | None:
+    """The adaptive subdivision of an object, None without.
 
     The switch is the last modifier's, or before Blender 5.0 the object's, and read with experimental features alone.
     """
     own = shown.original  # the evaluated one does not follow its switch
     last = own.modifiers[-1] if len(own.modifiers) else None
-    if last is None or last.type != "SUBSURF" or not last.show_render:
-        return False
-    if hasattr(last, "use_adaptive_subdivision"):
-        return bool(last.use_adaptive_subdivision)
-    is_experimental = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
-    return is_experimental and bool(getattr(getattr(own, "cycles", None), "use_adaptive_subdivision", False))
+    if last is None or last.type != "SUBSURF":
+        return None
+    rate, levels, offscreen, is_experimental = dicing_settings(depsgraph)
+    owner: Any = last if hasattr(last, "use_adaptive_subdivision") else is_experimental and getattr(own, "cycles", None)
+    curved = last.subdivision_type == "CATMULL_CLARK"
+    is_shown = last.show_viewport if is_preview(depsgraph) else last.show_render
+    if not is_shown or not getattr(owner, "use_adaptive_subdivision", False):
+        return None
+    if getattr(owner, "adaptive_space", "PIXEL") == "OBJECT":
+        return Dicing(owner.adaptive_object_edge_length * rate, False, curved, levels, offscreen)
+    pixels = owner.adaptive_pixel_size if owner == last else owner.dicing_rate
+    return Dicing(max(pixels * rate, 0.1), True, curved, levels, offscreen)
+
+
+def cage_of(shown: Any) -> Any:
+    """The object with the mesh that its only modifier subdivides; where others are before that, what they all make."""
+    own = shown.original
+    is_plain = own.type == "MESH" and own.mode == "OBJECT" and own.data.shape_keys is None
+    return own if is_plain and len(own.modifiers) == 1 else shown
 
 
 def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:

@@ -78,7 +78,7 @@ class ViewportView:
 
         to_world, projection = (np.reshape(matrix, (4, 4)) for matrix in (self.to_world, self.projection))
         if self.window:
-            return set_panorama(scene, to_world, self.window, self.clips, self.panorama, self.aperture)
+            return set_panorama(scene, to_world, self.window, self.frame, self.clips, self.panorama, self.aperture)
         return set_projection(
             scene, to_world, projection, self.frame, self.clips, self.aperture, orthographic=self.orthographic
         )

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 import numpy as np
 import pytest
 
@@ -150,14 +149,3 @@ def test_a_change_moves_the_vertices_again(studio: Any) -> None:
         np.testing.assert_array_equal(kept, studio.render("SHLIGHT"))
         studio.scene.render.use_persistent_data = True
         studio.render("SHLIGHT")
-
-
-def test_adaptive_subdivision_is_named(studio: Any) -> None:
-    made = hills(studio, displaced(studio, "DISPLACEMENT"), 4)
-    own = made.modifiers.new("Subdivision", "SUBSURF")
-    studio.scene.cycles.feature_set = "EXPERIMENTAL"
-    switch = own if hasattr(own, "use_adaptive_subdivision") else made.cycles
-    for value in (False, True):
-        switch.use_adaptive_subdivision = value
-        bpy.context.view_layer.update()
-        assert any("'Hills': adaptive subdivision" in line for line in studio.messages()) == value

@@ -8,11 +8,14 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
+from test_displacement import displaced, hills
 
 from shlight.metrics import rel_mse
 from shlight_blender.background import use_cycles
 from shlight_blender.compare.render import bounces_of
 from shlight_blender.compat import position_owner
+from shlight_blender.export import meshes
+from shlight_blender.export.displacement import displace
 from shlight_blender.motion_blur import MeanPicture, times_of
 
 SLOW = pytest.mark.slow
@@ -70,6 +73,23 @@ def test_what_moves_is_blurred_as_in_cycles(studio: Any, moving: str) -> None:
     studio.scene.render.use_motion_blur = False
     sharp = rel_mse(studio.render("SHLIGHT"), reference)
     assert (sharp > 5 * rel_mse(image, reference)) == (moving != "lamp")
+
+
+def test_what_moves_is_displaced_once(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its vertices are moved as at the picture's own time, as in Cycles."""
+    made = hills(studio, displaced(studio, "DISPLACEMENT", space="WORLD"), 4)
+    animate(made, "location", (-0.5, 0, 0), (0.5, 0, 0))
+    studio.scene.frame_set(5)
+    studio.scene.render.use_motion_blur, studio.scene.shlight.motion_times = True, 4
+    places = []
+
+    def counted(arrays: Any, displacements: Any, to_world: Any, values: Any) -> Any:
+        places.append(to_world[0, 3])
+        return displace(arrays, displacements, to_world, values)
+
+    monkeypatch.setattr(meshes, "displace", counted)
+    studio.render("SHLIGHT")
+    assert places == [0.0]
 
 
 @pytest.mark.parametrize("position", ["START", "END"])

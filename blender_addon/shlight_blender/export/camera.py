@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -111,11 +112,14 @@ class View:
     """How the camera sees the world.
 
     to_camera, 3 x 4: to x to the right, y up and z forward; of a panorama to Cycles' frame of it.
+    pixel: the width of a pixel [m] one metre before the camera, or of all of an orthographic one's. That of a panorama
+        is of one whose width is a whole turn.
     slope, offset: x/z slope[0] + offset[0] is -1 … 1 over the picture, and so is y/z; x and y where it is orthographic.
         Without meaning for a panorama.
     """
 
     to_camera: tuple[tuple[float, ...], ...]
+    pixel: float
     slope: tuple[float, float]
     offset: tuple[float, float]
     orthographic: bool
@@ -147,7 +151,7 @@ def set_camera(scene: shlight.Scene, eye: Eye, depsgraph: Any, frame: Frame, ren
             frame.bottom / frame.full_height + float(lens.shift_y),
             frame.top / frame.full_height + float(lens.shift_y),
         )
-        return set_panorama(scene, to_world, window, clips, panorama_of(lens, frame, render), aperture)
+        return set_panorama(scene, to_world, window, frame, clips, panorama_of(lens, frame, render), aperture)
     projection = _projection(eye, camera, depsgraph, frame, render)
     return set_projection(scene, to_world, projection, frame, clips, aperture, orthographic=lens.type == "ORTHO")
 
@@ -175,20 +179,22 @@ def set_projection(
     rows = np.linalg.inv(to_world)[:3] * np.array([[1.0], [1.0], [-1.0]])
     offset = projection[:2, 3] if orthographic else -projection[:2, 2]
     slope = float(projection[0, 0]), float(projection[1, 1])
-    return View(_plain(rows), slope, (float(offset[0]), float(offset[1])), orthographic)
+    pixel = min(2.0 / (slope[0] * frame.full_width), 2.0 / (slope[1] * frame.full_height))
+    return View(_plain(rows), pixel, slope, (float(offset[0]), float(offset[1])), orthographic)
 
 
 def set_panorama(
     scene: shlight.Scene,
     to_world: Matrix,
     window: Sequence[float],
+    frame: Frame,
     clips: tuple[float, float],
     panorama: Mapping[str, Any] | None,
     aperture: Mapping[str, Any],
 ) -> View:
     """Gives `scene` a camera whose picture is no plane; ExportError without a panorama.
 
-    to_world: 4 x 4, without scale. window: left, right, bottom and top of the whole panorama, which is 0 ... 1.
+    to_world: 4 x 4, without scale. window: left, right, bottom and top, in shares of the whole panorama, of frame.
     panorama, aperture: as of `panorama_of` and `aperture_of`.
     """
     if panorama is None:
@@ -197,7 +203,8 @@ def set_panorama(
     scene.set_panorama_camera(to_world, clip_start=clips[0], clip_end=clips[1], **sides, **panorama, **aperture)
     right, up, back = np.linalg.inv(to_world)[:3]
     rows = (right, back, up) if panorama["panorama_type"] == "mirrorball" else (-back, -right, up)
-    return View(_plain(rows), (0.0, 0.0), (0.0, 0.0), orthographic=False, panoramic=True)
+    pixel = 2.0 * math.pi * (window[1] - window[0]) / max(frame.width, 1)
+    return View(_plain(rows), pixel, (0.0, 0.0), (0.0, 0.0), orthographic=False, panoramic=True)
 
 
 def matrix_of_camera(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> Any:

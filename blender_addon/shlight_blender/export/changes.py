@@ -20,6 +20,7 @@ class Changes:
     objects: bool = False  # which there are, and where
     materials: bool = False
     all_shapes: bool = False
+    motion: bool = False  # within the time of one picture
     shapes: set[str] = field(default_factory=set)  # the objects whose triangles are others, by their full names
 
     def __bool__(self) -> bool:
@@ -51,7 +52,7 @@ def changes_of(depsgraph: Any) -> Changes:
 
 def motion_of(depsgraph: Any) -> Changes:
     """The changes that Cycles blurs: those of places and shapes of objects."""
-    changes = Changes(objects=True)
+    changes = Changes(objects=True, motion=True)
     for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Object) and update.is_updated_geometry:
             changes.shapes.add(name_of(update.id, "name_full"))

@@ -159,15 +159,22 @@ class MeshArrays:
 
 
 def object_arrays(
-    mesh_object: Any, place: str, names: Iterable[str], report: ExportReport, splits: bool = False
+    mesh_object: Any,
+    place: str,
+    names: Iterable[str],
+    report: ExportReport,
+    *,
+    displaced: bool = False,
+    whole: bool = False,
 ) -> MeshArrays | None:
     """The triangles of an object; None if it has none that can be drawn.
 
-    splits: for displacement, it has the vertices that Cycles' mesh has once it is split.
+    displaced: it has what displacement starts from, and the vertices that Cycles' mesh has once it is split; whole: it
+    is not split, as what Cycles subdivides.
     """
     mesh = mesh_object.to_mesh()
     try:
-        arrays = _mesh_arrays(mesh, names, splits)
+        arrays = _mesh_arrays(mesh, names, displaced, whole)
     finally:
         mesh_object.to_mesh_clear()
     if arrays is None:
@@ -205,7 +212,7 @@ def flattened(arrays: MeshArrays, to_world: NDArray[np.float64]) -> MeshArrays |
     return replace(arrays, vertices=vertices.astype(np.float32), normals=None)
 
 
-def _mesh_arrays(mesh: Any, attribute_names: Iterable[str], splits: bool) -> MeshArrays | None:
+def _mesh_arrays(mesh: Any, attribute_names: Iterable[str], displaced: bool, whole: bool) -> MeshArrays | None:
     """Triangles of an evaluated mesh with those of the attributes that it has, None if it has no triangles."""
     triangles = mesh_triangles(mesh)
     if not len(triangles.corners):
@@ -220,15 +227,14 @@ def _mesh_arrays(mesh: Any, attribute_names: Iterable[str], splits: bool) -> Mes
             normals = _repaired(normals[triangles.corners], vertices, corner_vertices)
     attributes = mesh_attributes(mesh, triangles, attribute_names)
     arrays = MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
-    if splits:
-        arrays = _split(arrays, mesh, triangles)
+    if displaced:
+        arrays = _split(arrays, mesh, triangles, "" if whole else splits_vertices(mesh))
     return arrays
 
 
-def _split(arrays: MeshArrays, mesh: Any, triangles: Triangles) -> MeshArrays:
-    """A mesh with a vertex for all corners that are one in Cycles' mesh."""
+def _split(arrays: MeshArrays, mesh: Any, triangles: Triangles, kind: str) -> MeshArrays:
+    """A mesh with a vertex for all corners that are one in Cycles' mesh; kind: as of splits_vertices."""
     smooth = values_of(mesh.polygons, "use_smooth", bool)[triangles.polygons]
-    kind = splits_vertices(mesh)
     normals, own = smooth_corner_normals(mesh), arrays.corner_normals
     if not kind or normals is None or own is None:
         return replace(arrays, before=Undisplaced(values_of(mesh.vertex_normals, "vector", np.float32, 3), smooth))

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import curve_settings, slot_materials, terminator_offsets
+from ..compat import Dicing, cage_of, curve_settings, dicing_of, is_preview, slot_materials, terminator_offsets
 from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
+from .dicing import diced
 from .displacement import displace
 from .linking import Links
 from .materials import Surface, read_material
@@ -145,7 +146,8 @@ class SceneMeshes:
         own = (material and material.as_pointer() for material in materials)
         curves = curve_settings(self._surroundings.depsgraph.scene_eval) if kind in (HAIR, CURVES) else {}
         visibility = Visibility.of(instance, self._surroundings)
-        settings = (terminator_offsets(mesh_object), visibility, kind, *curves.values())
+        dicing = None if kind else dicing_of(mesh_object, self._surroundings.depsgraph)
+        settings = (terminator_offsets(mesh_object), visibility, kind, dicing, *curves.values())
         key = (mesh_object.data.as_pointer(), self._group(mesh_object), *settings, *own)
         flat = _is_flat(to_world)
         if flat and kind:
@@ -159,7 +161,7 @@ class SceneMeshes:
             self._seen[key] = kept or (
                 self._convert_strands(instance, kind, curves, surfaces, visibility)
                 if kind
-                else self._convert(instance, to_world, surfaces, flat, visibility)
+                else self._convert(instance, to_world, surfaces, flat, visibility, dicing)
             )
         use = self._seen[key]
         use.transforms.append(np.eye(4) if flat else to_world)
@@ -179,7 +181,9 @@ class SceneMeshes:
         first_place = kept.transforms[0]
         kept.transforms, kept.object_values, kept.labels = [], [], []
         if not self._changes.materials:
-            return kept if not kept.is_of_place or np.array_equal(first_place, to_world) else None
+            # Displacement is that of one time of the picture, as in Cycles.
+            stays = not kept.is_of_place or (self._changes.motion and not _is_cut(surfaces))
+            return kept if stays or np.array_equal(first_place, to_world) else None
         if kept.is_of_place or (not kept.is_of_strands and (_is_cut(surfaces) or _is_displaced(surfaces))):
             return None
         if not self._attributes(surfaces) <= kept.attributes:
@@ -197,17 +201,44 @@ class SceneMeshes:
     def _group(self, mesh_object: Any) -> str | None:
         return self._surroundings.passes.light_part(SURFACES, name_of(mesh_object, "lightgroup"))
 
+    def _displaced(
+        self, instance: Any, to_world: Matrix, surfaces: list[Surface], dicing: Dicing | None, report: ExportReport
+    ) -> MeshArrays | None:
+        """The mesh of an instance as its materials leave it."""
+        shown, place, surroundings = instance.object, _place_of(instance.object), self._surroundings
+        names, moves = sorted(self._attributes(surfaces)), _is_displaced(surfaces)
+        if dicing is not None and any(own.emission.any() or own.varying for own in surfaces):
+            text = "adaptive subdivision of what shines is not supported; its mesh is as its modifiers leave it"
+            report.add(place, text, Effect.SLIGHT)
+            dicing = None
+        source = shown if dicing is None or dicing.curved else cage_of(shown)
+        is_diced = dicing is not None
+        arrays = object_arrays(source, place, names, report, displaced=moves or is_diced, whole=is_diced)
+        if arrays is not None and dicing is not None and (moves or dicing.curved or arrays.normals is not None):
+            # In a viewport the view that it is divided for stays until something else of it changes.
+            view = surroundings.camera_view if is_preview(surroundings.depsgraph) else surroundings.view
+            arrays, text = diced(arrays, dicing, to_world, view if dicing.in_pixels else None)
+            if text:
+                report.add(place, text, Effect.SLIGHT)
+        if arrays is None or not moves:
+            return arrays
+        displacements = [surface.displacement for surface in surfaces]
+        return displace(arrays, displacements, to_world, surroundings.object_values.of(instance))
+
     def _convert(
-        self, instance: Any, to_world: Matrix, surfaces: list[Surface], flat: bool, visibility: Visibility
+        self,
+        instance: Any,
+        to_world: Matrix,
+        surfaces: list[Surface],
+        flat: bool,
+        visibility: Visibility,
+        dicing: Dicing | None,
     ) -> KeptMesh:
         """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
         shown, place, report = instance.object, _place_of(instance.object), ExportReport()
         attributes = self._attributes(surfaces)
-        is_cut, is_displaced = _is_cut(surfaces), _is_displaced(surfaces)
-        values = self._surroundings.object_values.of(instance) if is_cut or is_displaced else []
-        arrays = object_arrays(shown, place, sorted(attributes), report, is_displaced)
-        if arrays is not None and is_displaced:
-            arrays = displace(arrays, [surface.displacement for surface in surfaces], to_world, values)
+        is_cut = _is_cut(surfaces)
+        arrays = self._displaced(instance, to_world, surfaces, dicing, report)
         if arrays is not None:
             names = sorted(_attribute_names(surfaces))
             complete(arrays.attributes, arrays.triangles.shape, shown, names, report)
@@ -215,11 +246,12 @@ class SceneMeshes:
             arrays = flattened(arrays, to_world)
         if arrays is not None and is_cut:
             at = np.eye(4) if flat else to_world
+            values = self._surroundings.object_values.of(instance)
             arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
         centers = np.empty((0, 3)) if arrays is None else _centers(arrays)
-        of_place, group = is_cut or is_displaced, self._group(shown)
+        of_place, group = is_cut or _is_displaced(surfaces) or dicing is not None, self._group(shown)
         made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, False, group, report, centers)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)

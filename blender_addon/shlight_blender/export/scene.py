@@ -12,7 +12,7 @@ import numpy as np
 
 import shlight
 
-from ..compat import curve_settings, is_subdivided_adaptively
+from ..compat import curve_settings, dicing_settings
 from ..frame import Frame, frame_of
 from ..names import name_of
 from ..passes import PassWishes, pass_wishes
@@ -73,12 +73,13 @@ class _State(NamedTuple):
             for own in depsgraph.object_instances
             if _is_seen(own, viewport) or _is_hairy(own, viewport, depsgraph)
         )
+        drawing = (*curve_settings(scene).values(), *dicing_settings(depsgraph))
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
             (override and override.as_pointer(), bounces > 0),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
-            (view_layer.use_solid, view_layer.use_strand, culling, *curve_settings(scene).values(), *seen),
+            (view_layer.use_solid, view_layer.use_strand, culling, *drawing, *seen),
             Linking.of(depsgraph),
         )
 
@@ -358,5 +359,3 @@ def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportRep
     blur = getattr(seen.original, "cycles", None)
     if view_layer.id_data.render.use_motion_blur and not getattr(blur, "use_deform_motion", True):
         report.add(place, "its deformation is blurred although that is switched off")
-    if view_layer.use_solid and is_subdivided_adaptively(seen, view_layer.id_data):
-        report.add(place, "adaptive subdivision is not supported; its mesh is as its modifiers leave it")
