@@ -170,9 +170,9 @@ def test_objects_without_material_or_nodes(studio: Any) -> None:
 # --- what is not supported
 
 
-def linked_occlusion(material: Any, socket: Any) -> Any:
-    """Links an Ambient Occlusion node, which is not supported, to a socket of the material's tree."""
-    node = material.node_tree.nodes.new("ShaderNodeAmbientOcclusion")
+def linked_wireframe(material: Any, socket: Any) -> Any:
+    """Links a Wireframe node, which is not supported, to a socket of the material's tree."""
+    node = material.node_tree.nodes.new("ShaderNodeWireframe")
     material.node_tree.links.new(node.outputs[0], socket)
     return node
 
@@ -181,13 +181,28 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
     studio.area()
     studio.camera()
     material = studio.material(name="Wood", Color=(0.25, 0.5, 0.75))
-    linked_occlusion(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
+    linked_wireframe(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
     studio.plane(material=material)
     (line,) = studio.messages(most=99)
     assert "Material 'Wood'" in line
     assert "node 'Grain'" in line
     assert "'Color' of 'Diffuse BSDF'" in line
     assert "[0.25, 0.5 , 0.75]" in line
+
+
+def test_nothing_is_bevelled_or_occluded(studio: Any) -> None:
+    """Both nodes are named, and the picture is that without them."""
+    material = studio.material(Color=(0.25, 0.5, 0.75))
+    studio.ball(1.0, material, location=(0, 0, 1))
+    studio.lit_floor()
+    plain = studio.render("SHLIGHT")
+    tree = material.node_tree
+    bevel, occlusion = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("Bevel", "AmbientOcclusion"))
+    occlusion.inputs["Color"].default_value = (0.25, 0.5, 0.75, 1.0)
+    tree.links.new(occlusion.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    tree.links.new(bevel.outputs["Normal"], tree.nodes["Diffuse BSDF"].inputs["Normal"])
+    assert ["Bevel is not" in line or "Occlusion is not" in line for line in studio.messages(most=99)] == [True, True]
+    np.testing.assert_allclose(studio.render("SHLIGHT"), plain, rtol=1e-5, atol=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -229,7 +244,7 @@ def test_volumes_and_unknown_nodes_are_named(studio: Any) -> None:
     tree = material.node_tree
     output = tree.get_output_node("CYCLES")
     tree.links.new(tree.nodes.new("ShaderNodeVolumeScatter").outputs[0], output.inputs["Volume"])
-    linked_occlusion(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
+    linked_wireframe(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
     studio.plane(material=material)
     text = "\n".join(studio.messages(most=99))
     for part in ("scattering is not supported", "'Coat Weight'"):

@@ -297,6 +297,16 @@ def _bump(inputs: NodeInputs) -> Vector:
     return nodes.bump(height, strength, distance, at=at, invert=inputs.node.invert)
 
 
+def _bevel(inputs: NodeInputs) -> Vector:
+    inputs.remark("Bevel is not supported; the normal without it is used")
+    return _own_normal(inputs)
+
+
+def _ambient_occlusion(inputs: NodeInputs) -> Expression:
+    inputs.remark("Ambient Occlusion is not supported; it is as if nothing were near")
+    return inputs.color("Color") if inputs.output.identifier == "Color" else number(1.0)
+
+
 INPUT_NODES: dict[str, ReadNode] = {
     "TEX_COORD": _texture_coordinate,
     "CAMERA": _camera_data,
@@ -314,4 +324,6 @@ INPUT_NODES: dict[str, ReadNode] = {
     "LIGHT_PATH": lambda inputs: LIGHT_PATH.get(inputs.output.identifier, lambda: number(0.0))(),
     "NORMAL_MAP": _normal_map,
     "BUMP": _bump,
+    "BEVEL": _bevel,
+    "AMBIENT_OCCLUSION": _ambient_occlusion,
 }
