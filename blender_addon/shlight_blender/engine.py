@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import record, running
+from .catchers import PARTS_WITH_PASSES, Part, Pictures, parts_of
 from .compat import write_pass
 from .frame import Frame, frame_of, memory_problem
 from .motion_blur import MeanPicture, middle_of, settings_of, times_of
@@ -25,6 +26,7 @@ from .passes import (
     layer_passes,
     pass_arguments,
     stamp_cryptomattes,
+    stores_shadows,
     with_features,
     write_passes,
 )
@@ -127,6 +129,16 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def _render(self, depsgraph: Any, frame: Frame, view: str) -> Arrays | None:
         """The picture of a view and its passes, or as much as there is when the user stops; None: nothing."""
+        pictures = Pictures(parts_of(depsgraph), stores_shadows(depsgraph.view_layer))
+        for part in pictures.parts:
+            layers = self._render_part(depsgraph, frame, view, part, pictures)
+            if layers is None or (not pictures.is_last(part) and not self._wait("Rendering")):
+                return None
+            pictures.made[part] = layers
+        return pictures.whole(pictures.made[pictures.parts[-1]])
+
+    def _render_part(self, depsgraph: Any, frame: Frame, view: str, part: Part, pictures: Pictures) -> Arrays | None:
+        """The picture of a part of the scene; `pictures` has those before."""
         # Imported here: an installation without the native module still registers.
         import shlight
 
@@ -140,13 +152,14 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._check("Exporting the scene")
             if len(times) > 1:
                 self._set_time(now_at + middle_of(depsgraph.scene))
-            exported = self._export(depsgraph, frame, view)
-            settings = render_settings(depsgraph.scene)
-            passes = pass_arguments(depsgraph.scene, depsgraph.view_layer)
+            exported = self._export(depsgraph, frame, view, part, pictures.parts == [Part.WHOLE])
+            settings = pictures.shared(render_settings(depsgraph.scene), part)
+            passes = pass_arguments(depsgraph.scene, depsgraph.view_layer) if part in PARTS_WITH_PASSES else {}
             denoises = depsgraph.scene.shlight.use_denoising and shlight.has_denoiser()
             record.last.export_seconds = time.perf_counter() - start
-            record.last.report.extend(exported.report)
-            record.last.dark = exported.dark or record.last.dark
+            if pictures.is_last(part):
+                record.last.report.extend(exported.report)
+                record.last.dark = exported.dark or record.last.dark
             record.last.settings = settings
             record.last.operations.update(exported.meshes.operations())
             record.last.texture_bytes = TEXTURES.size_in_bytes
@@ -161,8 +174,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 latest = image = mean.shown(image)
                 self._ends_with_passes = bool(passes)
                 self._status = status_of(report)
-                if (now := time.perf_counter()) >= next_update:
-                    self._deliver(depsgraph, frame, {view: {"combined": image}})
+                if pictures.is_last(part) and (now := time.perf_counter()) >= next_update:
+                    self._deliver(depsgraph, frame, {view: pictures.whole({"combined": image})})
                     taken = time.perf_counter() - now
                     next_update = now + max(UPDATE_INTERVAL, taken / LARGEST_UPDATE_SHARE)
                 return self._wait(self._status)
@@ -175,7 +188,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                     exported.scene,
                     frame.width,
                     frame.height,
-                    progress=mean.progress(self._progress),
+                    progress=mean.progress(pictures.progress(self._progress)),
                     on_update=show,
                     **(with_features(passes) if denoises else passes),
                     **settings_of(settings, number, len(times)),
@@ -199,19 +212,23 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             return mean.layers
         return denoised(mean.layers, "high", settings["threads"], lambda _: self._wait("Denoising"))
 
-    def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
-        """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""
+    def _export(self, depsgraph: Any, frame: Frame, view: str, part: Part, keeps: bool) -> Any:
+        """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept.
+
+        keeps: False for one of several parts, each of which has all of the scene.
+        """
         from .export import Changes, ExportedScene, changes_of, everything
 
         layer = name_of(depsgraph.view_layer)
         exported = self._exported.pop(layer, None)  # one whose export ends half way is not kept
-        if exported is None:
-            exported, changes = ExportedScene(), everything()
+        if exported is None or not keeps:
+            exported, changes = ExportedScene(part), everything()
         else:
             changes = changes_of(depsgraph) if self._is_new_frame else Changes()
         exported.look_from(depsgraph, frame=frame, camera=self._eye(depsgraph, view))
         exported.update(depsgraph, changes, waiting=self._wait)
-        self._exported[layer], self._is_new_frame = exported, False
+        if keeps:
+            self._exported[layer], self._is_new_frame = exported, False
         return exported
 
     def _set_time(self, time_: float) -> None:

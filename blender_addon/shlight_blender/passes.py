@@ -19,6 +19,7 @@ Arrays = Mapping[str, NDArray[np.float32]]
 # Names of lights' parts are "lamp<SEPARATOR>light group"; either may be empty.
 SEPARATOR = "\n"
 WORLD, SURFACES = "World", "Surfaces"  # in the place of lamps
+SHADOW_CATCHER = "shadow_catcher"  # an array that catchers.py makes
 FALLOFFS = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
 CRYPTOMATTES = {"object": "CryptoObject", "material": "CryptoMaterial", "asset": "CryptoAsset"}
 DENOISING = (
@@ -57,6 +58,11 @@ def stores_denoising_data(view_layer: Any) -> bool:
     return bool(getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False))
 
 
+def stores_shadows(view_layer: Any) -> bool:
+    """Whether a view layer has a pass of what shadow catchers show: likewise."""
+    return bool(getattr(getattr(view_layer, "cycles", None), "use_pass_shadow_catcher", False))
+
+
 def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
     """All passes but Combined that the view layer asks for and shlight has."""
     found = [LayerPass(*row) for switch, row in PASSES.items() if getattr(view_layer, switch, False)]
@@ -66,6 +72,8 @@ def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
                 found.append(LayerPass(f"{name}{i:02d}", "rgba", "COLOR", f"cryptomatte_{kind}", 4 * i))
     if stores_denoising_data(view_layer):
         found += [LayerPass(*row) for row in DENOISING]
+    if stores_shadows(view_layer):
+        found.append(LayerPass("Shadow Catcher", "RGB", "COLOR", SHADOW_CATCHER))
     for aov in view_layer.aovs:
         if aov.is_valid:
             channels, kind = ("X", "VALUE") if aov.type == "VALUE" else ("RGBA", "COLOR")
@@ -125,7 +133,7 @@ def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
 
 def pass_arguments(scene: Any, view_layer: Any) -> dict[str, Any]:
     """Arguments of `shlight.render` for the passes of a view layer; none where it asks for no more than Combined."""
-    own_passes = layer_passes(scene, view_layer)
+    own_passes = [own for own in layer_passes(scene, view_layer) if own.source != SHADOW_CATCHER]
     if not own_passes:
         return {}
     wishes = pass_wishes(scene, view_layer)

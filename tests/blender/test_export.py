@@ -188,19 +188,16 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     scene.render.use_motion_blur, scene.cycles.rolling_shutter_type = True, "TOP"
     view_layer = bpy.context.view_layer
     view_layer.use_pass_vector = True
-    view_layer.cycles.use_pass_shadow_catcher = True
     scene.world = bpy.data.worlds.new("Sky")
     scene.world.use_nodes = False
     scene.world.color = (0.1, 0.1, 0.1)
     scene.world.cycles_visibility.diffuse = False
-    studio.box(name="Catcher").is_shadow_catcher = True
     studio.link("Smoke", bpy.data.volumes.new("Smoke"))
     text = "\n".join(messages())
     for part in (
         "a rolling shutter is not supported",
-        "passes that are not supported: shadow_catcher, vector",
+        "passes that are not supported: vector",
         "World 'Sky': hiding it from diffuse rays",
-        "Object 'Catcher': shadow catchers",
         "Object 'Smoke': volumes are not supported; left out",
     ):
         assert part in text, text

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from types import SimpleNamespace
 from typing import Any
@@ -77,7 +78,7 @@ def test_ray_visibility_is_shown(studio: Any) -> None:
         for thing in (studio.area(), studio.box(), studio.scene.camera)
     }
     assert shown["Area"].shown == kinds
-    assert shown["Box"].shown == kinds | {"visible_transmission", "visible_shadow", "is_holdout"}
+    assert shown["Box"].shown == kinds | {"visible_transmission", "visible_shadow", "is_shadow_catcher", "is_holdout"}
     assert shown["Camera"].shown == set()
 
 
@@ -116,13 +117,13 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
     sheen = tree.nodes.new("ShaderNodeBsdfHair")
     sheen.label = "Fluff, 'soft'"
     tree.links.new(sheen.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-    box.is_shadow_catcher = True
+    box.data.vertices[0].co.x = math.nan
     context = {"scene": studio.scene, "region": SimpleNamespace(width=300)}
     context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # a Blender without a window has 0
     assert "Render to see" in drawn_by(report.report, **context).text
     studio.render("SHLIGHT")
     shown = drawn_by(report.report, **context)
-    assert "shadow catchers are not supported" in " ".join(shown.text.split()).lower()
+    assert "vertices are not finite" in " ".join(shown.text.split()).lower()
     node = next(place for place in shown.places if "node" in place)
     assert node == "Material 'Odd's', node 'Fluff, 'soft''"
     for place in shown.places:

@@ -76,7 +76,7 @@ def add_lamp(
     traits: dict[str, Any] = {
         "shadows": lamp_casts_shadows(lamp),
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
-        "camera": all(shown.visible_camera for shown in shown_by),
+        "camera": surroundings.part.shows_lamps and all(shown.visible_camera for shown in shown_by),
         "glossy": all(shown.visible_glossy for shown in shown_by),
         "group": surroundings.passes.light_part(name_of(lamp_object), name_of(lamp_object, "lightgroup")),
         **surroundings.linking.links(lamp_object, instancer).of_light(),

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
+from ..catchers import Part, is_catcher
 from ..compat import Dicing, cage_of, curve_settings, dicing_of, is_preview, slot_materials, terminator_offsets
 from ..names import name_of
 from ..passes import SURFACES
@@ -60,12 +61,15 @@ class Visibility(NamedTuple):
         shown, instancer = instance.object, instance.parent if instance.is_instance else None
         original = shown.original
         hidden = {"camera"} if original.indirect_only_get(view_layer=view_layer) else set()
+        part, catches = surroundings.part, is_catcher(instance)
+        hidden |= part.hidden_from(catches)
         for flag, kind in RAY_KINDS.items():
             if not getattr(shown, flag) or not (instancer is None or getattr(instancer, flag)):
                 hidden.add(kind)
         kinds = tuple(kind for kind in RAY_KINDS.values() if kind not in hidden)
         links = surroundings.linking.links(shown, instancer)
-        return Visibility(kinds, original.holdout_get(view_layer=view_layer), links)
+        holdout = original.holdout_get(view_layer=view_layer) or part.holds_out(catches)
+        return Visibility(kinds, holdout, links)
 
 
 class Label(NamedTuple):
@@ -156,6 +160,9 @@ class SceneMeshes:
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
+        before_catchers = self._surroundings.part is Part.OBJECTS and not is_catcher(instance)
+        if before_catchers and any(surface.is_transparent for surface in surfaces):
+            self.report.add(_place_of(mesh_object), "shadows on catchers do not show through it", Effect.THING)
         if key not in self._seen:
             kept = self._kept_mesh(key, instance, to_world, surfaces)
             self._seen[key] = kept or (

@@ -19,6 +19,7 @@ from shlight import nodes
 from shlight.nodes import Color, Shader, Value, Vector
 from shlight.nodes.values import Varying, color, maximum, number, vector
 
+from ..catchers import Part
 from ..names import name_of
 from ..passes import PassWishes
 from ..report import Effect, ExportReport
@@ -118,6 +119,7 @@ class Surroundings:
     passes: PassWishes = field(default_factory=PassWishes)
     light_bounces: bool = False
     linking: Linking = field(default_factory=lambda: Linking({}))
+    part: Part = Part.WHOLE  # of the scene that is shown
     view_is_used: bool = field(default=False, init=False)
 
     @property

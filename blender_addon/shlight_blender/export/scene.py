@@ -12,6 +12,7 @@ import numpy as np
 
 import shlight
 
+from ..catchers import Part, is_catcher
 from ..compat import curve_settings, dicing_settings
 from ..frame import Frame, frame_of
 from ..names import name_of
@@ -44,11 +45,6 @@ UNSUPPORTED_TYPES = {
 }
 # Filters of a view layer that leave some of both out of Cycles' picture too.
 FILTERS = {"MESH": "use_solid", CURVES: "use_strand", "VOLUME": "use_volumes"}
-
-# Flags of an object with the value at which they change nothing.
-VISIBILITY = {
-    "is_shadow_catcher": (False, "shadow catchers are not supported; drawn as usual"),
-}
 
 
 class _State(NamedTuple):
@@ -92,15 +88,17 @@ class ExportedScene:
     dark: what the report says if nothing gives light, else "".
     """
 
-    def __init__(self) -> None:
+    def __init__(self, part: Part = Part.WHOLE) -> None:
+        """part: of the scene; the camera sees it."""
         self.scene = shlight.Scene()
+        self._part = part
         self.dark = ""
         self._view: View | None = None
         self._frame: Frame | None = None  # of a camera's picture
         self._culling: Culling | None = None
         self._surroundings = Surroundings()
         self.meshes = SceneMeshes(self.scene)
-        self._world = SceneWorld(self.scene)
+        self._world = SceneWorld(self.scene, part)
         self._state = _State()
         self._is_lit: dict[str, bool] = {}  # by the part of the scene that gives light or none
         self._reports: dict[str, ExportReport] = {}  # likewise
@@ -160,7 +158,9 @@ class ExportedScene:
         if changes.materials:
             TEXTURES.begin_export()
             bounces = self._state.materials[1]
-            self._surroundings = Surroundings(self._view, passes=self._state.passes, light_bounces=bounces)
+            self._surroundings = Surroundings(
+                self._view, passes=self._state.passes, light_bounces=bounces, part=self._part
+            )
         self._surroundings.depsgraph, self._surroundings.linking = depsgraph, self._state.linking
         if changes:
             self._walk(depsgraph, changes, viewport, _asking(waiting))
@@ -235,7 +235,10 @@ class ExportedScene:
             key = (seen.original.as_pointer(), instancer and instancer.as_pointer())
             if key not in self._told:
                 self._told.add(key)
-                _report_object(seen, instancer, view_layer, report)
+                _report_object(seen, view_layer, report)
+                if viewport is not None and is_catcher(instance):
+                    text = "shadow catchers are drawn as usual in viewports"
+                    report.add(f"Object '{name_of(seen)}'", text, Effect.THING)
             if is_drawn:
                 self.meshes.add(instance, to_world, DRAWN_TYPES[seen.type])
             if view_layer.use_strand and _is_hairy(instance, viewport, depsgraph):
@@ -351,11 +354,8 @@ def _to_world(instance: Any) -> Any:
     return np.array(instance.matrix_world, dtype=np.float64)
 
 
-def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportReport) -> None:
+def _report_object(seen: Any, view_layer: Any, report: ExportReport) -> None:
     place = f"Object '{name_of(seen)}'"
-    for name, (neutral, text) in VISIBILITY.items():
-        if view_layer.use_solid and any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
-            report.add(place, text, Effect.THING)
     blur = getattr(seen.original, "cycles", None)
     if view_layer.id_data.render.use_motion_blur and not getattr(blur, "use_deform_motion", True):
         report.add(place, "its deformation is blurred although that is switched off")

@@ -11,11 +11,12 @@ from shlight import has_denoiser
 
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
 from ..names import name_of
-from ..passes import CRYPTOMATTES, stores_denoising_data
+from ..passes import CRYPTOMATTES, SHADOW_CATCHER, stores_denoising_data
 from ..report import Effect, ExportReport
 from .nodes import all_nodes
 
-PASSES_WRITTEN = {"use_pass_combined", *PASSES, *(f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES)}
+PASSES_WRITTEN = {"use_pass_combined", f"use_pass_{SHADOW_CATCHER}", *PASSES}
+PASSES_WRITTEN |= {f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES}
 # Says how precise another pass is, and is no pass itself.
 PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
 

@@ -17,6 +17,7 @@ from shlight.nodes.rays import Ray, color_on_ray
 from shlight.nodes.skies import Sky
 from shlight.nodes.values import Varying, number, vector
 
+from ..catchers import Part
 from ..compat import uses_nodes
 from ..names import name_of
 from ..passes import WORLD, PassWishes
@@ -106,8 +107,9 @@ RAY_KINDS = ("camera", "diffuse", "glossy")
 class SceneWorld:
     """The world of a shlight.Scene."""
 
-    def __init__(self, scene: shlight.Scene) -> None:
+    def __init__(self, scene: shlight.Scene, part: Part) -> None:
         self._scene = scene
+        self._part = part
         self._suns: list[Sun] = []
         self._visible = True
         self._group: str | None = None
@@ -119,7 +121,7 @@ class SceneWorld:
         transparent. `add_suns` is to follow.
         """
         scene = depsgraph.scene_eval
-        self._visible = not scene.render.film_transparent
+        self._visible = self._part.shows_world and not scene.render.film_transparent
         world = world_of(scene, depsgraph.view_layer_eval)
         around = Surroundings(depsgraph=depsgraph)
         read = World(np.zeros(3)) if world is None else _read_world(world, scene.shlight.world_width, around, report)

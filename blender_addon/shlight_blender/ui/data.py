@@ -58,6 +58,7 @@ def ray_visibility(layout: Any, context: Any) -> None:
     for kind in ("camera", "diffuse", "glossy", *([] if is_lamp else ["transmission", "shadow"])):
         column.prop(shown, f"visible_{kind}", text=kind.title())
     if not is_lamp:
+        layout.prop(shown, "is_shadow_catcher")
         layout.prop(shown, "is_holdout")
 
 
@@ -134,6 +135,8 @@ def passes_light(layout: Any, context: Any) -> None:
         _draw_switches(layout.column(heading=heading, align=True), context.view_layer, names)
     column = layout.column(heading="Other", align=True)
     _draw_switches(column, context.view_layer, OTHER)
+    if (cycles := getattr(context.view_layer, "cycles", None)) is not None:
+        column.prop(cycles, "use_pass_shadow_catcher")
     column.prop(context.scene.shlight, "use_pass_lights")
 
 
