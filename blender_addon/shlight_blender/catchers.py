@@ -26,7 +26,7 @@ LIGHT = ("combined", "emission", "environment")
 
 
 class Part(Enum):
-    """What the camera sees of a scene."""
+    """The camera sees a part of a scene."""
 
     WHOLE = auto()  # everything, catchers as any other object
     CATCHERS = auto()  # catchers; the others are held out
@@ -55,7 +55,7 @@ class Part(Enum):
         return {"diffuse", "glossy", "transmission", "shadow"} if self is Part.BARE and not catches else set()
 
 
-# Those of surfaces are the first one's, those of light the other's.
+# The first has the passes of surfaces, the other has those of light.
 PARTS_WITH_PASSES = {Part.WHOLE, Part.OBJECTS}
 
 

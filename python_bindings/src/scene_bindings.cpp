@@ -51,7 +51,7 @@ terminator_geometry_offset, terminator_shading_offset: 0 ... 1, against flat tri
     on the smooth surface that its normals describe; the second lets the light end earlier.
 visible_to: names of the kinds of rays that meet it: "camera", "diffuse" and "glossy" from surfaces that reflect so,
     "transmission" through glass, "shadow" towards lights; None: all. What it emits lights diffuse and glossy surfaces alike.
-holdout: the camera sees nothing there, and the picture is transparent.
+holdout: the camera sees nothing there, and the picture is transparent; what is behind shows as far as the mesh is.
 light_set: 0 ... 63, shadow_set: 0 ... 27: numbers by which lights tell what they light, and what blocks them.
 receivers, blockers: numbers of the light sets that its emission lights, and of the shadow sets that block it; None: all.
     What has the shadow set of a mesh that shines blocks its light too.

@@ -89,11 +89,6 @@ class Surface:
         """How many operations a hit takes; 0 if its values do not vary."""
         return 0 if isinstance(self.shader, Bsdf) else self.shader.operation_count
 
-    @property
-    def is_transparent(self) -> bool:
-        """True if light may go on straight through it."""
-        return isinstance(self.shader, Shader) and any(own.constant != 0.0 for own in self.shader.transparency)
-
     def emits(self) -> bool:
         """True if it may give light."""
         return bool(self.emission.any()) or self.varying is not None

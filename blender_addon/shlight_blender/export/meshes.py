@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..catchers import Part, is_catcher
+from ..catchers import is_catcher
 from ..compat import Dicing, cage_of, curve_settings, dicing_of, is_preview, slot_materials, terminator_offsets
 from ..names import name_of
 from ..passes import SURFACES
@@ -160,9 +160,6 @@ class SceneMeshes:
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
-        before_catchers = self._surroundings.part is Part.OBJECTS and not is_catcher(instance)
-        if before_catchers and any(surface.is_transparent for surface in surfaces):
-            self.report.add(_place_of(mesh_object), "shadows on catchers do not show through it", Effect.THING)
         if key not in self._seen:
             kept = self._kept_mesh(key, instance, to_world, surfaces)
             self._seen[key] = kept or (

@@ -138,7 +138,7 @@ struct MeshUse {
     bool turns_normals = true;
     std::uint32_t seen_by = kAllRays;    ///< the RayKind of rays that meet it, a shadow set by its shadow rays; its
                                          ///< emission lights lobes alike
-    bool is_holdout = false;             ///< the camera sees nothing there, neither it nor what is behind
+    bool is_holdout = false;             ///< the camera sees nothing there, and through it as far as it is transparent
     std::uint32_t group = 0;             ///< light group of its emission, see LightTraits::group
     std::uint32_t light_set = 0;         ///< lights with it among LightLinks::receivers light this
     LightLinks links;                    ///< of its emission

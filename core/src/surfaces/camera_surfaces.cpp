@@ -47,8 +47,7 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
     parts_.clear();
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         if (rays_[i].ray.empty()) {
-            sink.light[i].opacity = 1;  // outside a panorama's image, as Cycles has it
-            continue;
+            continue;  // outside a panorama's image, which is opaque, as Cycles has it
         }
         Segment segment = beginning;
         segment.ray = i;
@@ -102,11 +101,10 @@ void CameraSurfaces::meet(const Sink& sink) {
         if (segment.sees_lights()) {
             add_lamps(viewer, segment, parts_[i], distance, sink);
         }
-        if (segment.source == RaySource::camera && scene_->placed().is_holdout(met_[i])) {
-            end_empty(segment, sink);
-            continue;
-        }
         Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
+        if (segment.source == RaySource::camera && scene_->placed().is_holdout(met_[i])) {
+            end.source = RaySource::held_out;
+        }
         absorb(end, distance - double{parts_[i].t_min});
         if (segment.is_broad && is_shaded(segment) && add_cell(end, sink)) {
             add_emission(end, sink);
@@ -140,10 +138,8 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
         sink.apart.add(sink.in_apart(segment, segment.bounces), LightKind::environment,
                        left * scene_->environment().radiance(direction));
     }
-    if (!is_mirrored && background != nullptr) {
-        sink.light[segment.ray].opacity = 1;
-    } else if (!is_mirrored) {
-        end_empty(segment, sink);
+    if (!is_mirrored && background == nullptr) {
+        leave_empty(segment, left, sink);
     }
 }
 
@@ -249,26 +245,21 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
             reflect(surface, sink);
             continue;
         }
-        if (surface.source == RaySource::camera) {
-            hit_count_ += surface.depth == 0 ? 1 : 0;
-            sink.light[surface.ray].opacity = 1;
-        }
+        hit_count_ += surface.source == RaySource::camera && surface.depth == 0 ? 1 : 0;
         add_emission(surface, sink);
-        if (surface.depth > settings_.transparent_bounces) {
-            continue;
+        const bool ends = surface.depth > settings_.transparent_bounces;
+        const Rgb throughput = ends ? Rgb(0) : surface.throughput * transparency(surface);
+        if (throughput != Rgb(0)) {
+            Segment beyond = static_cast<const Segment&>(surface);
+            ++beyond.depth;
+            beyond.source = surface.source == RaySource::held_out ? RaySource::camera : surface.source;
+            beyond.throughput = throughput;
+            beyond.absorption = surface.absorption_beyond;
+            start(beyond, behind(surface.whole, surface.hit));
         }
-        const Material& material = scene_->materials()[surface.point.material];
-        if (material.shader != nullptr && material.shader->transparency) {
-            const Rgb throughput = surface.throughput * transparency(surface);
-            if (throughput != Rgb(0)) {
-                Segment beyond = static_cast<const Segment&>(surface);
-                ++beyond.depth;
-                beyond.throughput = throughput;
-                beyond.absorption = surface.absorption_beyond;
-                start(beyond, behind(surface.whole, surface.hit));
-            }
-        }
-        if (is_shaded(surface)) {
+        if (surface.source == RaySource::held_out) {
+            leave_empty(surface, surface.throughput - throughput, sink);
+        } else if (is_shaded(surface)) {
             reflect(surface, sink);
         }
     }

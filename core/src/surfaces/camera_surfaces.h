@@ -36,6 +36,7 @@ struct CameraRay {
 /// The origin of a ray.
 enum class RaySource : std::uint8_t {
     camera,
+    held_out,  ///< the camera's ends at a holdout and goes on where that is transparent
     mirror,    ///< no other light of a mirror is counted: its ray sees lamps, the background, and surfaces shine
     scattered  ///< by a lobe whose direct light counts apart: its ray sees what reflects light
 };
@@ -59,8 +60,8 @@ struct NeighbourRays {
 /// Light of a camera ray that is met along its path: emission of surfaces, lamps, and the background, also in mirrors.
 struct RayLight {
     Rgb radiance{0};
-    Rgb drawn{0};  ///< the part that has come by directions that were drawn
-    float opacity = 0;
+    Rgb drawn{0};       ///< the part that has come by directions that were drawn
+    float opacity = 1;  ///< the part that does not stay empty
 };
 
 /// A lobe as a camera ray meets it.
@@ -118,7 +119,7 @@ class CameraSurfaces {
         /// [1/m] of the bodies that it runs in, as far as they are known, and of those behind its end.
         Rgb absorption{0}, absorption_beyond{0};
 
-        bool sees_lights() const { return source != RaySource::scattered; }
+        bool sees_lights() const { return source != RaySource::scattered && source != RaySource::held_out; }
         /// The path on from its end. by: what sends it there; through: to the other side.
         Segment next(RaySource origin, PathKind by, bool through, const Rgb& share, const Ray& way) const {
             return {ray,
@@ -226,10 +227,9 @@ class CameraSurfaces {
     Rgb absorption_at(const Ray& ray) const;
     void meet(const Sink& sink);
     void leave_scene(const Segment& segment, const Sink& sink);
-    /// The part of the picture that is left stays empty.
-    static void end_empty(const Segment& segment, const Sink& sink) {
-        const Rgb& left = segment.throughput;
-        sink.light[segment.ray].opacity = 1.0F - (left.x + left.y + left.z) / 3;
+    /// A part of the picture stays empty.
+    static void leave_empty(const Segment& segment, const Rgb& part, const Sink& sink) {
+        sink.light[segment.ray].opacity -= (part.x + part.y + part.z) / 3;
     }
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
@@ -243,8 +243,8 @@ class CameraSurfaces {
     void add_emission(const Surface& surface, const Sink& sink);
     void pass_on(std::size_t first, const Sink& sink);
     bool is_shaded(const Segment& segment) const {
-        return segment.bounces <= settings_.max_bounces && segment.glossy <= settings_.glossy_bounces &&
-               segment.transmissions <= settings_.transmission_bounces &&
+        return segment.source != RaySource::held_out && segment.bounces <= settings_.max_bounces &&
+               segment.glossy <= settings_.glossy_bounces && segment.transmissions <= settings_.transmission_bounces &&
                segment.depth <= settings_.transparent_bounces;
     }
     /// A ray through a body, of which all hits are places near a surface.
