@@ -57,6 +57,15 @@ def test_the_reference_keeps_to_its_time_and_its_samples() -> None:
     assert halves_of(101, 1.0, per_sample=100.0)[1]["samples"] == 2
 
 
+def test_a_render_that_takes_long_before_its_first_sample_gets_more_of_them() -> None:
+    def render(half: int, first: int, samples: int) -> tuple[float, Any]:
+        return 4.0 + 0.01 * samples, np.zeros((1, 1, 3), np.float32)
+
+    told = reference.render_halves(render, reference.SampleTime({1: 8.0}), 10000, 40.0)[1]
+    assert told["samples"] >= 100
+    assert told["seconds"] <= 40 * 1.25
+
+
 def test_an_error_that_noise_hides_is_given_as_a_bound() -> None:
     assert measure.error_text({"rel_mse": 3.14e-5, "rel_mse_standard_error": 2e-6}) == "3.1e-05 ± 2e-06"
     assert measure.error_text({"rel_mse": 3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 7.0e-06"

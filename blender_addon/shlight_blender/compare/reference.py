@@ -61,12 +61,19 @@ class SampleTime:
         return max(self.measured)
 
     @property
-    def per_sample(self) -> float:
-        """Seconds that one more sample takes."""
+    def _slope(self) -> float:
         low, high = min(self.measured), self.largest
-        if high > low and self.measured[high] > self.measured[low]:
-            return (self.measured[high] - self.measured[low]) / (high - low)
-        return self.measured[high] / high
+        return (self.measured[high] - self.measured[low]) / max(high - low, 1)
+
+    @property
+    def per_sample(self) -> float:
+        """Seconds that one more sample takes, at most, until more samples are seen to take longer."""
+        return self._slope if self._slope > 0 else self.measured[self.largest] / self.largest
+
+    @property
+    def fixed(self) -> float:
+        """Seconds that a render takes without samples, at most, until more samples are seen to take longer."""
+        return self.seconds(0 if self._slope > 0 else self.largest)
 
     def seconds(self, samples: int) -> float:
         """Foretold wall time for this many samples."""
@@ -145,6 +152,6 @@ def _next_chunk(time: SampleTime, left: int, spent: float, budget: float) -> int
         return left
     if spent > 0 and rest < SMALLEST_SHARE * budget:
         return 0
-    seconds = min(max(LARGEST_SHARE * budget, 2 * time.seconds(0) / FIXED_SHARE), rest)
+    seconds = min(max(LARGEST_SHARE * budget, 2 * time.fixed / FIXED_SHARE), rest)
     fitting = min(int(time.samples_in(seconds / 2)), GROWTH * time.largest)
     return min(max(fitting, 0 if spent > 0 else 1), left)
