@@ -83,7 +83,7 @@ def shader_program(
 ) -> ShaderProgram: ...
 def surface_shader(
     program: ShaderProgram,
-    lobes: Sequence[tuple[str | Bsdf, float, int, int | None, int | None, bool, tuple[int, int] | None]],
+    lobes: Sequence[tuple[str | Bsdf, float, int, int | None, int | None, bool, tuple[int, int] | None, int | None]],
     emission: int | None,
     transparency: int | None,
     shadow_program: ShaderProgram,

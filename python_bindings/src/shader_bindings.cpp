@@ -29,7 +29,8 @@ using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, 
 /// Kind of lobe, or a Bsdf of one lobe, which brings its shape and ViewWeight; ior, result indices of weight, alpha and
 /// normal, ShadedLobe::several_bounces, and ShadedSubsurface.
 using LobeTuple = std::tuple<std::variant<std::string, Bsdf>, double, std::uint32_t, std::optional<std::uint32_t>,
-                             std::optional<std::uint32_t>, bool, std::optional<std::pair<std::uint32_t, int>>>;
+                             std::optional<std::uint32_t>, bool, std::optional<std::pair<std::uint32_t, int>>,
+                             std::optional<std::uint32_t>>;
 /// name, number of the result, whether it is a colour
 using AovTuple = std::tuple<std::string, std::uint32_t, bool>;
 
@@ -168,18 +169,19 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
                                                                 {},
                                                                 blocks_shadow_rays,
                                                                 Rgb(absorption[0], absorption[1], absorption[2])});
-    for (const auto& [kind, ior, weight, alpha, normal, several_bounces, numbers] : lobes) {
+    for (const auto& [kind, ior, weight, alpha, normal, several_bounces, numbers, leans_from] : lobes) {
         std::optional<ShadedSubsurface> below;
         if (numbers) {
             below = {numbers->first, static_cast<SubsurfaceEntry>(numbers->second)};
         }
         if (const auto* bsdf = std::get_if<Bsdf>(&kind)) {
             const Lobe& own = bsdf->lobes().at(0);
-            shader->lobes.push_back({own.shape, weight, {}, normal, false, false, own.weight, own.only_order, below});
+            shader->lobes.push_back(
+                {own.shape, weight, {}, normal, false, false, own.weight, own.only_order, {}, below});
         } else {
             const auto& name = std::get<std::string>(kind);
             shader->lobes.push_back({shape_of(name, ior), weight, alpha, normal, several_bounces, name == "translucent",
-                                     nullptr, 0, below});
+                                     nullptr, 0, leans_from, below});
         }
     }
     std::vector<std::string> aov_names;

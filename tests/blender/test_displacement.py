@@ -112,6 +112,17 @@ def test_what_reads_the_normal_reads_the_bent_one(studio: Any, method: str) -> N
     studio.compare(mean=4e-3, error=1e-3)
 
 
+@pytest.mark.parametrize("method", ["BUMP", "BOTH"])
+def test_a_normal_map_is_not_bent_and_leans_from_what_is(studio: Any, method: str) -> None:
+    """It is a bump of the bent surface, and shades itself the less the nearer to the bent normal it leans."""
+    material = displaced(studio, method)
+    bent = material.node_tree.nodes.new("ShaderNodeNormalMap")
+    bent.inputs["Color"].default_value = (0.9, 0.3, 0.8, 1)
+    material.node_tree.links.new(bent.outputs["Normal"], material.node_tree.nodes["Diffuse BSDF"].inputs["Normal"])
+    hills(studio, material)
+    studio.compare(mean=2e-3, error=4e-4)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_the_place_of_a_displacement_is_that_before_it(studio: Any, method: str) -> None:
     """Coordinates of the object are those that the UV map has of it, though they would move along with the mesh.

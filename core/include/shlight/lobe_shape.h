@@ -142,6 +142,8 @@ double lobe_width(const LobeShape& shape);
 bool is_anisotropic(const LobeShape& shape);
 /// Whether it is one of microfacets with two widths.
 bool is_stretched(const LobeShape& shape);
+/// Whether it is Diffuse::bumped, whose ω_o is a normal.
+bool is_bumped(const LobeShape& shape);
 /// Lanes take this number of each view: the azimuth of an anisotropic table, or the width of another shape.
 double lobe_parameter(const LobeShape& shape);
 

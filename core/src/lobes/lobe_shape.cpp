@@ -21,6 +21,11 @@ bool is_stretched(const LobeShape& shape) {
     return own != nullptr && own->across != 0;
 }
 
+bool is_bumped(const LobeShape& shape) {
+    const auto* own = std::get_if<DiffuseShape>(&shape);
+    return own != nullptr && own->kind == Diffuse::bumped;
+}
+
 double lobe_parameter(const LobeShape& shape) {
     const auto* table = std::get_if<TableShape>(&shape);
     return table != nullptr && is_anisotropic(shape) ? table->azimuth : lobe_width(shape);

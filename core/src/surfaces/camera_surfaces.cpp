@@ -353,6 +353,12 @@ LobeShape CameraSurfaces::varied(const Surface& surface, const ShadedLobe& lobe,
     return with_form(lobe.shape, form);
 }
 
+/// Cycles' shadow of a bump is the same for a smooth normal and its opposite.
+Vec3d CameraSurfaces::leaning(const Surface& surface, const ShadedLobe& lobe, const Vec3d& own) const {
+    const Vec3d smooth = normal(surface, lobe.leans_from);
+    return glm::dot(smooth, own) < 0 ? -smooth : smooth;
+}
+
 void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const {
     lobes.clear();
     const Vec3d& smooth = surface.point.shading_normal;
@@ -371,7 +377,8 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             const LobeShape shape = lobe.alpha ? varied(surface, lobe, own) : laid_out(surface, lobe.shape);
             const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
             lobes.push_back({shape, lobe.translucent ? -own : own, weight * color(surface, lobe.weight),
-                             lobe.several_bounces, lobe.translucent});
+                             lobe.several_bounces, lobe.translucent,
+                             is_bumped(shape) ? leaning(surface, lobe, own) : Vec3d(0)});
         }
         return;
     }
@@ -402,11 +409,10 @@ void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hit
             continue;
         }
         const SurfaceLobe& own = lobes_[first];
-        const bool bumped = own.is_bumped();
         weights_.assign(lobes_.size(), Rgb(0));
         forms_.assign(lobes_.size(), {});
         for (std::size_t i = first; i < lobes_.size(); ++i) {
-            if (lobes_[i].normal == own.normal && lobes_[i].is_bumped() == bumped) {
+            if (lobes_[i].normal == own.normal && lobes_[i].leans_from == own.leans_from) {
                 taken_[i] = 1;
                 if (!is_mirror(lobes_[i].shape)) {
                     weights_[i] = surface.throughput * lobes_[i].weight;

@@ -71,12 +71,10 @@ struct SurfaceLobe {
     Rgb weight;                    ///< colour, as of a surface that nothing stands before
     bool several_bounces = false;  ///< see ShadedLobe
     bool translucent = false;      ///< see ShadedLobe
+    Vec3d leans_from{0};           ///< of a bump, the smooth normal; 0: the lobe is none of a bump
 
     Vec3d viewers_normal() const { return translucent ? -normal : normal; }
-    bool is_bumped() const {
-        const auto* diffuse = std::get_if<DiffuseShape>(&shape);
-        return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
-    }
+    bool is_bumped() const { return leans_from != Vec3d(0); }
     /// The point as the side has it from which it takes light.
     SurfacePoint lit_side(const SurfacePoint& point) const { return translucent ? point.turned() : point; }
 };
@@ -289,13 +287,13 @@ class CameraSurfaces {
     /// The view of a lobe; a bump's is the smooth normal. A translucent lobe has none, and looks the same from
     /// everywhere.
     static const Vec3d& view_of(const Surface& surface, const SurfaceLobe& lobe) {
-        return lobe.translucent   ? lobe.normal
-               : lobe.is_bumped() ? surface.point.shading_normal
-                                  : surface.towards_viewer;
+        return lobe.translucent ? lobe.normal : lobe.is_bumped() ? lobe.leans_from : surface.towards_viewer;
     }
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
     /// A shape as it lies on the surface, see PlacedMeshes::azimuth().
     LobeShape laid_out(const Surface& surface, const LobeShape& shape) const;
+    /// SurfaceLobe::leans_from of a bump. own: its normal.
+    Vec3d leaning(const Surface& surface, const ShadedLobe& lobe, const Vec3d& own) const;
     /// The shape of a shader's lobe whose width varies. normal: of the lobe.
     LobeShape varied(const Surface& surface, const ShadedLobe& lobe, const Vec3d& normal) const;
     void add_hits(const Sink& sink, Hits& hits);

@@ -163,7 +163,7 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uin
     for (std::size_t i = first; i < lobes_.size(); ++i) {
         const SurfaceLobe& lobe = lobes_[i];
         if (lobe.normal == own.normal && !is_mirror(lobe.shape) && sampled_shape(lobe.shape) == sampled &&
-            lobe.is_bumped() == own.is_bumped()) {
+            lobe.leans_from == own.leans_from) {
             taken_[i] = 1;
             weight += lobe.weight * static_cast<float>(lobe_value(lobe.shape, way, view));
         }

@@ -43,6 +43,11 @@ def normal() -> Vector:
     return _vector("normal")
 
 
+def interpolated_normal() -> Vector:
+    """The smooth normal, also of a shader whose normals are bent by `Shader.with_normal`."""
+    return _vector("normal", 1)  # the core has one normal; the number tells this one from those that are bent
+
+
 def geometric_normal() -> Vector:
     """The normal of the triangle, on the viewer's side."""
     return _vector("geometric_normal")

@@ -58,6 +58,7 @@ class Lobe:
     ior: float = 1.5  # of "ggx_dielectric"
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
     rest: tuple[Value, ...] = ()  # what follows alpha of a shape with more numbers, in the order of `ShadedLobe::alpha`
+    leans_from: Vector | None = None  # of "bumped_lambert", the smooth normal; None: the interpolated one
     below: Subsurface | None = None  # light comes out of the body, and this is by what it enters
 
 
@@ -75,7 +76,8 @@ class Refraction:
     reflects: bool = True  # False: all light goes through that can
 
 
-_ListedLobe: TypeAlias = tuple[str | _core.Bsdf, float, int, int | None, int | None, bool, tuple[int, int] | None]
+_Below: TypeAlias = tuple[int, int] | None
+_ListedLobe: TypeAlias = tuple[str | _core.Bsdf, float, int, int | None, int | None, bool, _Below, int | None]
 
 
 class _Listed(NamedTuple):
@@ -134,8 +136,8 @@ class Shader:
     def with_normal(self, normal: Vector) -> Shader:
         """The same with another normal wherever the smooth one counts, in expressions too.
 
-        A normal that leans from this one throws the shadow of a bump; this one throws none, as that of a bump that
-        Cycles makes of a displacement.
+        A lobe whose own normal leans from this one throws the shadow of a bump; this one throws none, as that of a bump
+        that Cycles makes of a displacement.
         """
         n = vector(normal, "normal")
         vectors = {id(None): n}  # by id of what they take the place of: lobes that share a normal still do
@@ -159,7 +161,9 @@ class Shader:
             below = lobe.below
             if below is not None:
                 below = replace(below, numbers=tuple(own(value) for value in below.numbers))
-            return replace(turned(lobe), rest=tuple(own(value) for value in lobe.rest), below=below)
+            before = own_normal(lobe.leans_from) if lobe.kind == "bumped_lambert" else None
+            rest = tuple(own(value) for value in lobe.rest)
+            return replace(turned(lobe), rest=rest, leans_from=before, below=below)
 
         return replace(
             self,
@@ -204,15 +208,17 @@ class Shader:
             weight = color_on_ray(lobe.weight, Ray.CAMERA, filtered=self._is_filtered)
             if weight.constant == BLACK:
                 continue
-            normal = lobe.normal
-            if normal is not None:
-                normal = normals.setdefault(id(normal), Vector(*on_ray(normal, Ray.CAMERA)))
+            normal, before = (
+                None if of is None else normals.setdefault(id(of), Vector(*on_ray(of, Ray.CAMERA)))
+                for of in (lobe.normal, lobe.leans_from)
+            )
             alpha = None if lobe.alpha is None else on_ray([lobe.alpha], Ray.CAMERA)[0]
             rest = tuple(on_ray(lobe.rest, Ray.CAMERA))
             below = lobe.below
             if below is not None:
                 below = replace(below, numbers=tuple(on_ray(below.numbers, Ray.CAMERA)))
-            found.append(replace(lobe, weight=weight, alpha=alpha, normal=normal, rest=rest, below=below))
+            bent = replace(lobe, normal=normal, leans_from=before)
+            found.append(replace(bent, weight=weight, alpha=alpha, rest=rest, below=below))
         return found
 
     @cached_property
@@ -227,11 +233,12 @@ class Shader:
         for lobe in self._lobes_for_camera():
             weight = builder.result(tuple(lobe.weight))
             alpha = None if lobe.alpha is None else builder.result([lobe.alpha, *lobe.rest])
-            if lobe.normal is not None and id(lobe.normal) not in normals:
-                normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
-            normal = None if lobe.normal is None else normals[id(lobe.normal)]
+            for leaning in (lobe.normal, lobe.leans_from):
+                if leaning is not None and id(leaning) not in normals:
+                    normals[id(leaning)] = builder.result(tuple(leaning))
+            normal, before = (None if own is None else normals[id(own)] for own in (lobe.normal, lobe.leans_from))
             below = None if lobe.below is None else (builder.result(lobe.below.numbers), lobe.below.entry)
-            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal, lobe.several_bounces, below))
+            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal, lobe.several_bounces, below, before))
         glow, seen = (
             color_on_ray(own, Ray.CAMERA, filtered=self._is_filtered) for own in (self.emission, self.transparency)
         )
@@ -273,7 +280,8 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     found: dict[tuple[Any, ...], Lobe] = {}
     for lobe in lobes:
         numbers = [_identity(value) for value in (lobe.alpha, *lobe.rest)]
-        key = (lobe.kind, lobe.ior, id(lobe.normal), lobe.several_bounces, id(lobe.below), *numbers)
+        objects = map(id, (lobe.normal, lobe.leans_from, lobe.below))
+        key = (lobe.kind, lobe.ior, *objects, lobe.several_bounces, *numbers)
         same = found.get(key)
         found[key] = lobe if same is None else replace(lobe, weight=color(same.weight + lobe.weight))
     return tuple(found.values())
