@@ -225,8 +225,11 @@ def main() -> None:
     fits: list[Array] = []
     channels = []
     for channel in range(3):
-        pair = [points_of(skies[own], channel, [fit[:, i] for fit in fits]) for i, own in enumerate((0.0, 1.0))]
-        fits.append(np.stack(pair, axis=1))
+        dark = points_of(skies[0.0], channel, [fit[:, 0] for fit in fits])
+        # The ground changes all channels alike.
+        near = [dark + fit[:, 1] - fit[:, 0] for fit in fits] or [dark]
+        bright = points_of(skies[1.0], channel, near)
+        fits.append(np.stack([dark, bright], axis=1))
         channels.append(balanced(fits[-1], channel, between))
     np.savez_compressed(KEPT_HOSEK, points=np.array(channels, dtype=np.float32))
 
