@@ -39,11 +39,13 @@ def test_a_scene_without_objects_shows_the_world(studio: Any) -> None:
 
 
 def test_faces_that_lie_on_others_are_named(studio: Any) -> None:
-    """Two turned squares in one place, and a box that has a face twice; a box like another, elsewhere, has none."""
+    """Two turned squares in one place, cut by other diagonals, and a mesh that has a face twice; a box like another,
+    elsewhere, has none."""
     studio.simple_scene()
-    for name in ("Square", "Square again"):
-        studio.plane(1.0, name=name, location=(2, 1, 0.7), rotation_euler=(0.3, 0.2, 0.1))
     corners, faces = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]), [(0, 1, 2, 3)]
+    turned = {"location": (2, 1, 0.7), "rotation_euler": (0.3, 0.2, 0.1)}
+    studio.mesh("Square", corners, [(0, 1, 2), (0, 2, 3)], **turned)
+    studio.mesh("Square again", corners, [(1, 2, 3), (1, 3, 0)], **turned)
     studio.mesh("Twice", [*corners, *corners], [*faces, (4, 5, 6, 7)], location=(-2, 1, 0.3))
     studio.link("Copy", bpy.data.objects["Box"].data, (0.4, 2.1, 0.3))
     studio.render("SHLIGHT")

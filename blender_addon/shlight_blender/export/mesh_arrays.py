@@ -101,25 +101,37 @@ def _last_of_each(joined: Joined, loops: int, corners: Integers) -> NDArray[np.i
         last = found
 
 
-# Triangles of a scene up to which doubled ones are looked for, in some 0.3 s.
-MOST_TRIANGLES = 1_000_000
-# Distance at which centres of triangles count as the same ÷ the scene's largest coordinate.
-SAME_PLACE = 1e-6
-# Odd numbers that make one of three coordinates; a chance hit among a million triangles has a probability of 3e-8.
-MIXED = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
+# Triangles of a scene up to which doubled ones are looked for, in a second.
+MOST_TRIANGLES = 300_000
+# Distance at which places count as the same ÷ the scene's largest coordinate, and the same of directions.
+SAME_PLACE, SAME_DIRECTION = 1e-6, 1e-4
+# Odd numbers that make one of ten; a chance hit among a million edges has a probability of 3e-8.
+MIXED = 2 * np.random.default_rng(0).integers(2**63, size=10, dtype=np.uint64) + np.uint64(1)
 
 
-def doubled(centers: Sequence[NDArray[Any]]) -> list[bool]:
-    """For each (n, 3) array of triangles' centres in the world: whether any is that of another triangle, too."""
-    counts = [len(own) for own in centers]
+def doubled(corners: Sequence[NDArray[Any]]) -> list[bool]:
+    """For each (n, 3, 3) array of triangles in the world: whether any lies on another triangle that shares an edge.
+
+    These are all that two meshes of the same polygons have, however these are cut into triangles.
+    """
+    counts = [len(own) for own in corners]
     if sum(counts) == 0:
         return [False] * len(counts)
-    places = np.concatenate(centers)
-    grid = np.rint(places / max(float(np.abs(places).max()) * SAME_PLACE, np.finfo(np.float64).tiny))
-    keys = (grid.astype(np.int64).astype(np.uint64) * MIXED).sum(axis=1)
-    _, number, often = np.unique(keys, return_inverse=True, return_counts=True)
-    ends = np.cumsum(counts)
-    return [bool((often[number[end - n : end]] > 1).any()) for n, end in zip(counts, ends, strict=True)]
+    start = np.concatenate(corners)
+    end, third = np.roll(start, -1, axis=1), np.roll(start, -2, axis=1)
+    along = unit(end - start, 0.0)
+    across = third - start
+    inward = unit(across - (across * along).sum(axis=-1, keepdims=True) * along, 0.0)
+    same = max(float(np.abs(start).max()) * SAME_PLACE, np.finfo(np.float64).tiny)
+    # The middle of an edge, its length, and squares of its direction are the same for both of its directions.
+    length = np.linalg.norm(end - start, axis=-1, keepdims=True)
+    told = [0.5 * (start + end) / same, length / same, inward / SAME_DIRECTION, along**2 / SAME_DIRECTION]
+    grid = np.rint(np.concatenate(told, axis=-1)).astype(np.int64).astype(np.uint64)
+    has_area = inward.any(axis=-1)
+    _, number, often = np.unique((grid * MIXED).sum(axis=-1)[has_area], return_inverse=True, return_counts=True)
+    mesh = np.repeat(np.arange(len(counts)), counts)[:, None].repeat(3, axis=1)[has_area]
+    found = np.bincount(mesh[often[number] > 1], minlength=len(counts))
+    return [bool(each) for each in found]
 
 
 class Undisplaced(NamedTuple):

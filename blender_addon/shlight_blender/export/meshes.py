@@ -102,7 +102,7 @@ class KeptMesh:
     is_of_strands: bool  # see strands.py
     group: str | None  # see PassWishes.light_part
     report: ExportReport
-    centers: NDArray[np.float64]  # of its triangles; none if there are too many to look for doubled ones
+    corners: NDArray[np.float64]  # of its triangles; none if there are too many to look for doubled ones
     transforms: list[Matrix] = field(default_factory=list)
     object_values: list[list[float]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
@@ -254,9 +254,9 @@ class SceneMeshes:
             arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
-        centers = np.empty((0, 3)) if arrays is None else _centers(arrays)
+        corners = np.empty((0, 3, 3)) if arrays is None else _corners(arrays)
         of_place, group = is_cut or _is_displaced(surfaces) or dicing is not None, self._group(shown)
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, False, group, report, centers)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, False, group, report, corners)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             geometry_offset, shading_offset = terminator_offsets(shown)
@@ -293,8 +293,8 @@ class SceneMeshes:
         attributes, depsgraph = self._attributes(surfaces), self._surroundings.depsgraph
         strands = strands_of(kind, shown, place, sorted(attributes), depsgraph, report)
         owner, group = _owner(instance, depsgraph), self._group(shown)
-        none, centers = np.zeros(len(surfaces), dtype=np.int64), np.empty((0, 3))
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, False, True, group, report, centers)
+        none, corners = np.zeros(len(surfaces), dtype=np.int64), np.empty((0, 3, 3))
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, False, True, group, report, corners)
         if strands is None:
             return made
         names = sorted(_attribute_names(surfaces))
@@ -369,15 +369,15 @@ class SceneMeshes:
 
     def _find_doubled(self) -> set[str]:
         """The objects with a face that lies on another one, as the report names them."""
-        count = sum(len(use.centers) * len(use.transforms) for use in self._seen.values())
+        count = sum(len(use.corners) * len(use.transforms) for use in self._seen.values())
         if count > MOST_TRIANGLES:
             return set()
-        names, centers = [], []
+        names, corners = [], []
         for use in self._seen.values():
             for to_world, label in zip(use.transforms, use.labels, strict=True):
                 names.append(f"Object '{label.name}'")
-                centers.append(use.centers @ to_world[:3, :3].T + to_world[:3, 3])
-        return {name for name, is_doubled in zip(names, doubled(centers), strict=True) if is_doubled}
+                corners.append(use.corners @ to_world[:3, :3].T + to_world[:3, 3])
+        return {name for name, is_doubled in zip(names, doubled(corners), strict=True) if is_doubled}
 
 
 def _place_of(shown: Any) -> str:
@@ -385,11 +385,10 @@ def _place_of(shown: Any) -> str:
     return f"Object '{name_of(shown)}'"
 
 
-def _centers(arrays: MeshArrays) -> NDArray[np.float64]:
+def _corners(arrays: MeshArrays) -> NDArray[np.float64]:
     if len(arrays.triangles) > MOST_TRIANGLES:
-        return np.empty((0, 3))
-    centers: NDArray[np.float64] = arrays.vertices[arrays.triangles].mean(axis=1, dtype=np.float64)
-    return centers
+        return np.empty((0, 3, 3))
+    return arrays.vertices[arrays.triangles].astype(np.float64)
 
 
 def _place(use: KeptMesh) -> None:
