@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # build_libraries.sh FOLDER : builds the libraries that shlight links with from their sources and installs them there.
 #
-# Wheels link with these: Embree has the instruction sets and geometries that shlight uses and is a part of the module,
-# so that a wheel is a fraction of the size of one with Debian's Embree. It needs git, CMake and a C++ compiler.
+# Wheels link with these: Embree has the instruction sets and geometries that shlight uses, and is a part of the module.
+# It needs git, CMake and a C++ compiler.
 set -euo pipefail
 folder=$(realpath -m "$1")
 sources=$(mktemp -d)
