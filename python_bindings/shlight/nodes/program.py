@@ -80,6 +80,8 @@ class ProgramBuilder:
             source, index, component = step.data
             return (INPUT, 0.0, *self.input_number(source, index), [component]), 1
         number, _, results = operations()[step.name]
+        if isinstance(step.data, float):  # over which a slope's difference is taken
+            return (OPERATION, step.data, number, 0, arguments), results
         return (OPERATION, 0.0, number, self._resource(step.data), arguments), results
 
     def _resource(self, data: Any) -> int:
