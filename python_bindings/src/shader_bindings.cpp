@@ -15,7 +15,7 @@
 #include "bindings.h"
 #include "shaders/image_texture.h"
 #include "shaders/operations.h"
-#include "shaders/script.h"
+#include "shaders/script_kernel.h"
 #include "whole_objects.h"
 
 using namespace pybind11::literals;

@@ -11,7 +11,7 @@
 #include "shaders/gradient_noise.h"
 #include "shaders/hash_kernel.h"
 #include "shaders/image_texture.h"
-#include "shaders/script.h"
+#include "shaders/script_kernel.h"
 #include "shaders/voronoi_kernel.h"
 
 namespace shlight {

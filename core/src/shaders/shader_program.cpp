@@ -10,7 +10,7 @@
 
 #include "base/checks.h"
 #include "shaders/operations.h"
-#include "shaders/script.h"
+#include "shaders/script_kernel.h"
 
 namespace shlight {
 namespace {

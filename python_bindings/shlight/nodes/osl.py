@@ -378,35 +378,35 @@ class _Translation:
         if to.width != 1 or kind not in ("noise", "snoise", "perlin", "uperlin") or not 0 < len(place) <= 2:
             raise ValueError(f"script uses noise of the kind {kind}, which is not supported")
         registers = [self.as_float(symbol, i) for symbol in place for i in range(symbol.width)]
-        first = self.temporary(len(registers))
-        for i, register in enumerate(registers):
-            self.emit("copy", first + i, register)
-        found = self.made(f"perlin{len(registers)}", first)
+        found = self.made(f"perlin{len(registers)}", self.together(registers))
         if kind in ("noise", "uperlin"):
             half = self.constant(0.5)
             found = self.made("add", self.made("mul", found, half), half)
         self.emit("copy", self.own(to), found)
 
-    def product(self, a: list[int], b: list[int]) -> int:
-        """The scalar product of vectors in registers."""
-        parts = [self.made("mul", x, y) for x, y in zip(a, b, strict=True)]
-        return self.made("add", self.made("add", parts[0], parts[1]), parts[2])
+    def together(self, registers: list[int]) -> int:
+        """The first of registers side by side that hold what others do."""
+        first = self.temporary(len(registers))
+        for i, register in enumerate(registers):
+            self.emit("copy", first + i, register)
+        return first
 
     def of_vectors(self, op: Instruction) -> None:
         to, *symbols = op.arguments
         vectors = [[self.as_float(symbol, i) for i in range(3)] for symbol in symbols]
         if op.name == "dot":
-            found = [self.product(*vectors)]
+            found = [self.made("dot", *(self.together(own) for own in vectors))]
         elif op.name == "luminance":
-            found = [self.product(vectors[0], [self.constant(float(part)) for part in _core.LUMINANCE])]
+            weights = [self.constant(float(part)) for part in _core.LUMINANCE]
+            found = [self.made("dot", self.together(vectors[0]), weights[0])]
         elif op.name == "cross":
-            (ax, ay, az), (bx, by, bz) = vectors
-            pairs = ((ay, bz, az, by), (az, bx, ax, bz), (ax, by, ay, bx))
-            found = [self.made("sub", self.made("mul", a, b), self.made("mul", c, d)) for a, b, c, d in pairs]
+            pairs = ((1, 2), (2, 0), (0, 1))
+            found = [self.made("cross_term", *(self.together([own[i], own[j]]) for own in vectors)) for i, j in pairs]
         else:
             if op.name == "distance":
                 vectors = [[self.made("sub", a, b) for a, b in zip(*vectors, strict=True)]]
-            size = self.made("sqrt", self.product(vectors[0], vectors[0]))
+            first = self.together(vectors[0])
+            size = self.made("sqrt", self.made("dot", first, first))
             found = [size]
             if op.name == "normalize":
                 share = self.made("div", self.constant(1.0), size)  # 0 of 0

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "shaders/script.h"
+#include "shaders/script_kernel.h"
+
+// Compiled for each instruction set, because those without fused operations have functions for them.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shaders/script_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <array>
@@ -13,9 +20,10 @@
 
 #include "base/checks.h"
 #include "shaders/gradient_noise.h"
-#include "shaders/script_functions.h"
+#include "shaders/script_functions-inl.h"
 
-namespace shlight {
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 using Word = std::uint32_t;
@@ -61,14 +69,16 @@ template <std::size_t kCount>
 void perlin(Word* registers, const Instruction& at) {
     constexpr std::size_t kLanes = 16;
     std::array<std::array<float, kLanes>, kCount> places{};
-    std::array<float, kLanes> zeros{}, result{};
-    // Of the arguments after the place all are 0: one octave, without period or footprint.
+    std::array<float, kLanes> zeros{}, ones{}, result{};
+    ones.fill(1);
+    // One octave; of the arguments after it all are 0, which stands for no period and no footprint.
     std::array<const float*, 16> arguments{};
     arguments.fill(zeros.data());
     for (std::size_t i = 0; i < kCount; ++i) {
         places[i].fill(read<float>(registers, at.a + static_cast<Word>(i)));
         arguments[i] = places[i].data();
     }
+    arguments[kCount] = ones.data();
     float* out = result.data();
     noise<kCount>({arguments.data(), &out, 1, nullptr, nullptr, static_cast<Word>(Fractal::fbm_sum), nullptr});
     write(registers, at.to, result[0]);
@@ -115,6 +125,21 @@ Word int_remainder(Word a, Word b) {
 
 Integer shifted_right(Integer a, Integer by) {
     return a >> (by & 31);
+}
+
+/// A component of a vector product: a0 b1 - a1 b0 of pairs of registers, rounded as in Cycles.
+void cross_term(Word* registers, const Instruction& at) {
+    const float second = read<float>(registers, at.a + 1) * read<float>(registers, at.b);
+    write(registers, at.to, std::fma(read<float>(registers, at.a), read<float>(registers, at.b + 1), -second));
+}
+
+/// The scalar product of triples of registers, rounded as in Cycles.
+void dot(Word* registers, const Instruction& at) {
+    const auto product = [&](Word i, float rest) {
+        return std::fma(read<float>(registers, at.a + i), read<float>(registers, at.b + i), rest);
+    };
+    const float y = read<float>(registers, at.a + 1) * read<float>(registers, at.b + 1);
+    write(registers, at.to, product(2, product(0, y)));
 }
 
 constexpr std::string_view kJump = "jump", kJumpUnless = "jump_unless", kLoad = "load", kStore = "store";
@@ -177,6 +202,8 @@ constexpr std::array kInstructions = {
     Named{"perlin2", &perlin<2>},
     Named{"perlin3", &perlin<3>},
     Named{"perlin4", &perlin<4>},
+    Named{"dot", &dot},
+    Named{"cross_term", &cross_term},
     Named{"hsv_to_rgb", &rgb_from_hsv},
     Named{"to_float", one<Integer, [](Integer a) { return static_cast<float>(a); }>},
     Named{"to_int", one<float, script::integer>},
@@ -258,9 +285,7 @@ void run(const std::vector<Instruction>& code, Word* registers) {
     }
 }
 
-}  // namespace
-
-std::span<const std::string_view> script_instructions() {
+std::span<const std::string_view> instruction_names() {
     static const auto names = [] {
         std::array<std::string_view, kInstructions.size()> list{};
         std::transform(kInstructions.begin(), kInstructions.end(), list.begin(), [](const Named& n) { return n.name; });
@@ -269,7 +294,7 @@ std::span<const std::string_view> script_instructions() {
     return names;
 }
 
-void check_script(const ShaderScript& script) {
+void check_one(const ShaderScript& script) {
     const std::size_t count = script.registers.size();
     bool is_sound = script.code.size() % kWords == 0 && script.argument_count <= count &&
                     std::all_of(script.results.begin(), script.results.end(), [&](Word r) { return r < count; });
@@ -281,7 +306,7 @@ void check_script(const ShaderScript& script) {
     }
 }
 
-void run_script(const OperationLanes& lanes) {
+void run_lanes(const OperationLanes& lanes) {
     const ShaderScript& script = *lanes.script;
     const std::vector<Instruction> code = instructions(script);
     std::vector<Word> registers;
@@ -297,4 +322,28 @@ void run_script(const OperationLanes& lanes) {
     }
 }
 
+}  // namespace
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace shlight {
+
+HWY_EXPORT(instruction_names);
+HWY_EXPORT(check_one);
+HWY_EXPORT(run_lanes);
+
+std::span<const std::string_view> script_instructions() {
+    return HWY_DYNAMIC_DISPATCH(instruction_names)();
+}
+
+void check_script(const ShaderScript& script) {
+    HWY_DYNAMIC_DISPATCH(check_one)(script);
+}
+
+void run_script(const OperationLanes& lanes) {
+    HWY_DYNAMIC_DISPATCH(run_lanes)(lanes);
+}
+
 }  // namespace shlight
+#endif

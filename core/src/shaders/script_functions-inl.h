@@ -3,9 +3,16 @@
 // Functions of floats as scripts of Open Shading Language have them in Cycles.
 //
 // They are polynomials of few terms, whose errors of up to 1e-4 a fractal makes large. A picture of it is the same only
-// if each of them is rounded as there, so the order of operations counts, and no two of them may be fused to one. They
-// are defined for all arguments.
-#pragma once
+// if each of them is rounded as there, so the order of operations counts, and which of them are fused to one. They are
+// defined for all arguments.
+#if defined(SHLIGHT_SCRIPT_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_SCRIPT_FUNCTIONS_INL_H_
+#undef SHLIGHT_SCRIPT_FUNCTIONS_INL_H_
+#else
+#define SHLIGHT_SCRIPT_FUNCTIONS_INL_H_
+#endif
+
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +20,8 @@
 #include <cstdint>
 #include <limits>
 
-namespace shlight::script {
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE::script {
 
 inline constexpr float kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
 inline constexpr float kPi = 3.14159265358979323846F;
@@ -41,7 +49,7 @@ float polynomial(float x, float first, Rest... rest) {
     if constexpr (sizeof...(rest) == 0) {
         return first;
     } else {
-        return polynomial(x, rest...) * x + first;
+        return std::fma(polynomial(x, rest...), x, first);
     }
 }
 
@@ -54,10 +62,10 @@ struct Turn {
         const std::int32_t q = integer(std::rint(x * (1 / kPi / unit)));
         const auto number = static_cast<float>(q);
         // pi in four parts, of which the first ones have few digits, so that their products are exact.
-        angle = number * (-3.140625F * unit) + x;
-        angle = number * (-0.00024187564849853515625F * 4 * unit) + angle;
-        angle = number * (-3.7747668102383613586e-08F * 4 * unit) + angle;
-        angle = number * (-1.2816720341285448015e-12F * 4 * unit) + angle;
+        angle = std::fma(number, -3.140625F * unit, x);
+        angle = std::fma(number, -0.00024187564849853515625F * 4 * unit, angle);
+        angle = std::fma(number, -3.7747668102383613586e-08F * 4 * unit, angle);
+        angle = std::fma(number, -1.2816720341285448015e-12F * 4 * unit, angle);
         is_odd = (q & 1) != 0;
     }
 };
@@ -68,7 +76,7 @@ inline float sine(float x) {
     const float s = t * t, a = turn.is_odd ? -t : t;
     const float p = polynomial(s, -0.166666597127914428710938F, 0.00833307858556509017944336F,
                                -0.0001981069071916863322258F, 2.6083159809786593541503e-06F);
-    return between(s * (p * a) + a, -1, 1);
+    return between(std::fma(s, p * a, a), -1, 1);
 }
 
 inline float cosine(float x) {
@@ -86,14 +94,15 @@ inline float tangent(float x) {
     const float p =
         polynomial(s, 0.333331853151321411132812F, 0.133383005857467651367188F, 0.0534495301544666290283203F,
                    0.0242998078465461730957031F, 0.00331984995864331722259521F, 0.00927245803177356719970703F);
-    const float u = s * (p * t) + t;
+    const float u = std::fma(s, p * t, t);
     return turn.is_odd ? -1 / u : u;
 }
 
-/// The arccosine of |x|.
-inline float acute_arccosine(float x) {
+/// start + sign times the arccosine of |x|.
+inline float acute_arccosine(float x, float start = 0, float sign = 1) {
     const float a = std::abs(x), m = a < 1 ? without_tiny(a) : 1.0F;
-    return std::sqrt(1 - m) * polynomial(m, 1.5707963267F, -0.213300989F, 0.077980478F, -0.02164095F);
+    const float p = polynomial(m, 1.5707963267F, -0.213300989F, 0.077980478F, -0.02164095F);
+    return std::fma(sign * std::sqrt(1 - m), p, start);
 }
 
 inline float arccosine(float x) {
@@ -102,13 +111,13 @@ inline float arccosine(float x) {
 }
 
 inline float arcsine(float x) {
-    return std::copysign(kPi / 2 - acute_arccosine(x), x);
+    return std::copysign(acute_arccosine(x, kPi / 2, -1), x);
 }
 
 /// The arctangent of 0 … 1.
 inline float low_arctangent(float x) {
     const float s = without_tiny(x), t = s * s;
-    return s * (0.430165678F * t + 1) / ((0.0579354987F * t + 0.763007998F) * t + 1);
+    return s * std::fma(0.430165678F, t, 1.0F) / std::fma(std::fma(0.0579354987F, t, 0.763007998F), t, 1.0F);
 }
 
 inline float arctangent(float x) {
@@ -130,7 +139,7 @@ inline float logarithm2(float value) {
     const float high =
         polynomial(f, -0.34730547155299F, 0.24187369696082F, -0.13753123777116F, 0.05206469089414F, -0.00931049621349F);
     const float low = polynomial(f, 1.442689881667200F, -0.72116591947498F, 0.47868480909345F);
-    return (f4 * high + f * low) + static_cast<float>(static_cast<std::int32_t>(bits >> 23U) - 127);
+    return std::fma(f4, high, f * low) + static_cast<float>(static_cast<std::int32_t>(bits >> 23U) - 127);
 }
 
 inline float logarithm(float x) {
@@ -162,7 +171,7 @@ inline float exponential(float x) {
 inline float exponential_less_one(float x) {
     if (std::abs(x) < 0.03F) {
         const float y = without_tiny(x);
-        return std::copysign(0.5F * (y * y) + y, x);
+        return std::copysign(std::fma(0.5F, y * y, y), x);
     }
     return exponential(x) - 1;
 }
@@ -176,7 +185,7 @@ inline float hyperbolic_sine(float x) {
     a = without_tiny(a);
     const float square = a * a;
     const float r = polynomial(square, 0.1666673421859F, 8.32990277558e-3F, 2.03945513931e-4F);
-    return std::copysign(r * a * square + a, x);
+    return std::copysign(std::fma(r * a, square, a), x);
 }
 
 inline float hyperbolic_cosine(float x) {
@@ -228,7 +237,7 @@ inline float error_function(float x) {
 
 /// What is left of a division whose quotient is cut to an integer; 0 of a division by 0.
 inline float remainder(float a, float b) {
-    return b != 0 ? a - static_cast<float>(integer(a / b)) * b : 0;
+    return b != 0 ? std::fma(-static_cast<float>(integer(a / b)), b, a) : 0;
 }
 
 /// A quotient; 0 where it is not finite.
@@ -245,4 +254,7 @@ inline float smooth_step(float low, float high, float x) {
     return (3 - 2 * t) * (t * t);
 }
 
-}  // namespace shlight::script
+}  // namespace shlight::HWY_NAMESPACE::script
+HWY_AFTER_NAMESPACE();
+
+#endif
