@@ -38,6 +38,7 @@ COMPARISONS = {
     "eq": ("equal", False, False),
     "neq": ("equal", False, True),
 }
+LUMINANCE = (0.2125072330236435, 0.7153501510620117, 0.0721426010131836)  # of Rec. 709, as Cycles has it
 NOTHING = frozenset(("nop", "end", "useparam", "printf", "fprintf", "warning", "error"))
 SPARE = 4  # registers after the last one, as instructions of several registers need them
 MOST_REGISTERS, MOST_NESTED = 1 << 20, 100
@@ -62,7 +63,7 @@ class CoreScript:
         return code, registers, self.arguments, list(self.results)
 
 
-def osl(script: str, **inputs: Varying) -> dict[str, Value | Vector]:
+def osl(script: str, /, **inputs: Varying) -> dict[str, Value | Vector]:
     """The outputs, by name, of a script of Open Shading Language that was compiled by oslc.
 
     script: the text of the .oso file. inputs: the script's parameters by name; those that are left out have the values
@@ -72,7 +73,7 @@ def osl(script: str, **inputs: Varying) -> dict[str, Value | Vector]:
     supported.
     """
     known, arguments = [], []
-    parsed = _parsed(script)
+    parsed = parse(script)
     for name, given in inputs.items():
         symbol = parsed.symbols.get(name)
         if symbol is None or symbol.kind != "param" or symbol.length is not None or not symbol.default:
@@ -96,10 +97,6 @@ def osl(script: str, **inputs: Varying) -> dict[str, Value | Vector]:
         else:
             results[name] = (Color if kind == "color" else Vector)(next(made), next(made), next(made))
     return results
-
-
-def _parsed(script: str) -> Script:
-    return parse(script)
 
 
 @lru_cache(maxsize=64)
@@ -397,7 +394,7 @@ class _Translation:
         if op.name == "dot":
             found = [self.made("dot", *(self.together(own) for own in vectors))]
         elif op.name == "luminance":
-            weights = [self.constant(float(part)) for part in _core.LUMINANCE]
+            weights = [self.constant(part) for part in LUMINANCE]
             found = [self.made("dot", self.together(vectors[0]), weights[0])]
         elif op.name == "cross":
             pairs = ((1, 2), (2, 0), (0, 1))
