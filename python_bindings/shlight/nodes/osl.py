@@ -373,7 +373,7 @@ class _Translation:
         to, *place = op.arguments
         kind = place.pop(0).text if place and place[0].type == "string" else op.name
         if to.width != 1 or kind not in ("noise", "snoise", "perlin", "uperlin") or not 0 < len(place) <= 2:
-            raise ValueError(f"script uses noise of the kind {kind}, which is not supported")
+            raise ValueError(f"script uses noise of the kind {kind} and of {to.type}s, which is not supported")
         registers = [self.as_float(symbol, i) for symbol in place for i in range(symbol.width)]
         found = self.made(f"perlin{len(registers)}", self.together(registers))
         if kind in ("noise", "uperlin"):
