@@ -31,14 +31,15 @@ BODIES = (
     "R = color(\"hsv\", x, t, 2) + luminance(a) + transformc(\"hsv\", \"rgb\", color(y, t, 1));",
     "R = vector(isnan(x), isfinite(y), isinf(t)) + (x < y) + (x >= y && t > 0.5 || x == y) + !int(x) + (a == a);",
     "float n = noise(\"uperlin\", 3*a, x); R = n + vector(noise(3*x), snoise(3*x, y), noise(\"perlin\", 3*a));",
-    "float s[5]; for (int i = 0; i < 9; i++) s[i % 5] = i*x; vector w[2]; w[0] = w[1] = b; w[int(2*t)] = a; R = w[1] + s[3];"
-    " R[1] = s[int(4*t)];",
+    "float s[5]; for (int i = 0; i < 9; i++) s[i % 5] = i*x; vector w[2]; w[0] = w[1] = b; w[int(2*t)] = a;"
+    " R = w[1] + s[3]; R[1] = s[int(4*t)];",
     "int i = 0; R = 0; do { i++; if (i == 3) continue; R += i*x; if (R[0] > 9) break; } while (i < 7);"
     " while (i < 20) { i += 2; R[2] += y; }",
     "float f(float q) { if (q < 0) return 1; return q*q; } R = f(x) + 2*f(y); if (t < 0.5) exit(); R[1] = 3;",
     # The chaos of a fractal shows each rounding, and 0 times what is infinite is 0 of constants alone.
-    "float p = x, r = y, n = 4; int i; for (i = 0; i < 300; i++) { float w = p; p = sin(p*p - r*r) + pow(abs(r), n)*0 + t;"
-    " r = 2*w*r + cos(w)*sinh(r); if (hypot(p, r) > 400) break; } R = vector(i/30.0, clamp(p, -1, 1), clamp(r, -1, 1));",
+    "float p = x, r = y, n = 4; int i; for (i = 0; i < 300; i++) { float w = p;"
+    " p = sin(p*p - r*r) + pow(abs(r), n)*0 + t; r = 2*w*r + cos(w)*sinh(r); if (hypot(p, r) > 400) break; }"
+    " R = vector(i/30.0, clamp(p, -1, 1), clamp(r, -1, 1));",
     "R = P/100 + N + 2*Ng + vector(I[0], u - u, v - v) + k + hidden[2] + q[1];",
 )  # fmt: skip
 
@@ -47,8 +48,8 @@ def compiled(body: str, folder: Path) -> str:
     """The text of a script, as Blender's own compiler makes it."""
     source, result = folder / "script.osl", folder / "script.oso"
     source.write_text(
-        "shader s(float x = 0, float y = 0, float t = 0, vector a = 0, vector b = 0, int k = 2, point q = point(1, 2, 3),"
-        f' point hidden = P [[string widget = "null"]], output vector R = 0) {{ {body} }}'
+        "shader s(float x = 0, float y = 0, float t = 0, vector a = 0, vector b = 0, int k = 2,"
+        f' point q = point(1, 2, 3), point hidden = P [[string widget = "null"]], output vector R = 0) {{ {body} }}'
     )
     assert _cycles.osl_compile(str(source), str(result)), body
     return result.read_text()

@@ -10,7 +10,7 @@ import numpy as np
 
 from shlight import _core
 from shlight.nodes.inputs import SOURCES
-from shlight.nodes.osl import CoreScript
+from shlight.nodes.script_registers import CoreScript
 from shlight.nodes.values import Step, Value, in_order, operations, result_count
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class ProgramBuilder:
 
     def program(self) -> _core.ShaderProgram:
         """The program of all listed steps; waits for pictures that are still being read."""
-        images, scripts = ([own.core for own in listed] for listed in (self._images, self._scripts))
+        images, scripts = [lookup.core for lookup in self._images], [own.core for own in self._scripts]
         return _core.shader_program(self._steps, self._tables, images, scripts, self._results)
 
     def input_number(self, source: str, index: int | str) -> tuple[int, int]:
