@@ -15,6 +15,7 @@
 #include "bindings.h"
 #include "shaders/image_texture.h"
 #include "shaders/operations.h"
+#include "shaders/script_kernel.h"
 #include "whole_objects.h"
 
 using namespace pybind11::literals;
@@ -25,6 +26,9 @@ namespace {
 using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
+/// code, registers, number of arguments, and results
+using ScriptTuple =
+    std::tuple<AnyArray<std::uint32_t>, AnyArray<std::uint32_t>, std::uint32_t, std::vector<std::uint32_t>>;
 using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>, bool>;
 /// Kind of lobe, or a Bsdf of one lobe, which brings its shape and ViewWeight; ior, result indices of weight, alpha and
 /// normal, ShadedLobe::several_bounces, and ShadedSubsurface.
@@ -59,7 +63,8 @@ ShaderStep step_from(const StepTuple& tuple) {
 }
 
 ShaderProgram program_from(const std::vector<StepTuple>& steps, const std::vector<TableTuple>& tables,
-                           std::vector<ImagePointer> images, const std::vector<std::uint32_t>& results) {
+                           std::vector<ImagePointer> images, const std::vector<ScriptTuple>& scripts,
+                           const std::vector<std::uint32_t>& results) {
     std::vector<ShaderStep> own_steps(steps.size());
     std::transform(steps.begin(), steps.end(), own_steps.begin(), step_from);
     std::vector<ShaderTable> own_tables;
@@ -68,7 +73,14 @@ ShaderProgram program_from(const std::vector<StepTuple>& steps, const std::vecto
         const auto all = values(numbers);
         own_tables.push_back({{all.begin(), all.end()}, sizes});
     }
-    return {std::move(own_steps), std::move(own_tables), std::move(images), results};
+    std::vector<ShaderScript> own_scripts;
+    own_scripts.reserve(scripts.size());
+    for (const auto& [code, registers, arguments, own_results] : scripts) {
+        const auto words = values(code), at_first = values(registers);
+        own_scripts.push_back(
+            {{words.begin(), words.end()}, {at_first.begin(), at_first.end()}, arguments, own_results});
+    }
+    return {std::move(own_steps), std::move(own_tables), std::move(images), std::move(own_scripts), results};
 }
 
 /// Reads inputs from arrays (places, lanes), so that a program can be run without a scene.
@@ -260,6 +272,10 @@ void bind_shader(py::module_& m) {
         }
         return list;
     });
+    m.def("script_instructions", [] {
+        const auto names = script_instructions();
+        return std::vector<std::string>(names.begin(), names.end());
+    });
     py::class_<ImageTexture, std::shared_ptr<ImageTexture>>(m, "ImageTexture", without_constructor())
         .def_property_readonly(
             "size", [](const ImageTexture& self) { return std::pair(self.pixels().width(), self.pixels().height()); },
@@ -278,10 +294,11 @@ void bind_shader(py::module_& m) {
     m.def(
         "shader_program",
         [](const std::vector<StepTuple>& steps, const std::vector<TableTuple>& tables,
-           const std::vector<std::shared_ptr<ImageTexture>>& images, const std::vector<std::uint32_t>& results) {
-            return program_from(steps, tables, {images.begin(), images.end()}, results);
+           const std::vector<std::shared_ptr<ImageTexture>>& images, const std::vector<ScriptTuple>& scripts,
+           const std::vector<std::uint32_t>& results) {
+            return program_from(steps, tables, {images.begin(), images.end()}, scripts, results);
         },
-        "steps"_a, "tables"_a, "images"_a, "results"_a);
+        "steps"_a, "tables"_a, "images"_a, "scripts"_a, "results"_a);
     const py::class_<ShaderObject> shader(m, "SurfaceShader", without_constructor());
     m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
           "attribute_names"_a, "aovs"_a, "refractions"_a, "blocks_shadow_rays"_a, "absorption"_a);

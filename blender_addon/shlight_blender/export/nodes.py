@@ -137,6 +137,7 @@ class NodeInputs:
     node: Any
     output: Any
     groups: tuple[Any, ...]
+    asked: Any = None  # the socket that reads the output, behind groups and reroutes
 
     def socket(self, name: str | int) -> Any:
         """An input by number, identifier or name, also if the node's mode hides it; None if there is none."""
@@ -277,7 +278,7 @@ class TreeReader:
         return self._known[asked.key]
 
     def _inputs(self, source: Origin) -> NodeInputs:
-        return NodeInputs(self, source.node, source.output, source.groups)
+        return NodeInputs(self, source.node, source.output, source.groups, source.socket)
 
     def _in_circle(self, asked: Asked) -> Expression | Shader:
         if asked.is_shader:

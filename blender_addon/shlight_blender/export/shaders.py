@@ -22,6 +22,7 @@ from .displacement import DISPLACEMENT_NODES
 from .input_nodes import INPUT_NODES, around, fresnel_of
 from .nodes import NodeInputs, ReadNode, own_value, positive
 from .noise_nodes import NOISE_NODES
+from .script_nodes import SCRIPT_NODES
 from .texture_nodes import TEXTURE_NODES
 from .value_nodes import VALUE_NODES
 from .volume_nodes import VOLUME_NODES
@@ -266,6 +267,7 @@ NODES: dict[str, ReadNode] = {
     "RGB": lambda inputs: own_value(inputs.output),
     **TEXTURE_NODES,
     **NOISE_NODES,
+    **SCRIPT_NODES,
     **INPUT_NODES,
     **VALUE_NODES,
     **DISPLACEMENT_NODES,

@@ -6,6 +6,7 @@
 // colours are three values. A value may be needed at other places than the hit: where camera rays to the right and
 // below would meet the plane of the surface, which filters textures, and at two places near the hit in that plane, at
 // right angles, which give bump maps their slope. Only values of which such a difference is taken are computed there.
+// A step may run a script, which has loops.
 #pragma once
 
 #include <cstddef>
@@ -50,9 +51,10 @@ struct ShaderInput {
 struct ShaderOperation {
     std::string_view name;
     std::size_t argument_count = 0, result_count = 0;
-    /// Whether the step's `parameter` is the index of a table or an image, or a number below mode_count, which chooses
-    /// what the operation does; otherwise it must be 0.
-    enum class Parameter : std::uint8_t { none, table, image, mode } parameter{};
+    /// Whether the step's `parameter` is the index of a table, an image or a script, which has its own numbers of
+    /// arguments and results, or a number below mode_count, which chooses what the operation does; otherwise it must be
+    /// 0.
+    enum class Parameter : std::uint8_t { none, table, image, mode, script } parameter{};
     std::uint32_t mode_count = 0;
 };
 
@@ -63,6 +65,17 @@ std::span<const ShaderOperation> shader_operations();
 struct ShaderTable {
     std::vector<float> values;         ///< the first coordinate runs fastest
     std::vector<std::uint32_t> sizes;  ///< number of entries along each of 1 … 3 coordinates, ≥ 1
+};
+
+/// Instructions that are run hit by hit, and may jump, over registers of 32 bits that hold a float or an integer.
+struct ShaderScript {
+    /// Five words of each instruction: its number among script_instructions(), the register that it writes, and those
+    /// that it reads. Of jumps the second word is the instruction that they lead to; of `load` and `store` the last one
+    /// is the length of the array.
+    std::vector<std::uint32_t> code;
+    std::vector<std::uint32_t> registers;  ///< what they hold at first
+    std::uint32_t argument_count = 0;      ///< the arguments are written to the first registers
+    std::vector<std::uint32_t> results;    ///< registers
 };
 
 struct ShaderStep {
@@ -90,7 +103,8 @@ class ShaderProgram {
   public:
     /// results: indices of the values that evaluate() returns. Throws std::invalid_argument for inconsistent steps.
     ShaderProgram(std::vector<ShaderStep> steps, std::vector<ShaderTable> tables,
-                  std::vector<std::shared_ptr<const ImageTexture>> images, const std::vector<std::uint32_t>& results);
+                  std::vector<std::shared_ptr<const ImageTexture>> images, std::vector<ShaderScript> scripts,
+                  const std::vector<std::uint32_t>& results);
 
     std::size_t result_count() const { return results_.size(); }
     /// Number of operations per hit.
@@ -116,6 +130,9 @@ class ShaderProgram {
     static constexpr int kFirstNear = 3;
 
     void check(const std::vector<std::uint32_t>& results);
+    void check_operation(const ShaderStep& step, std::uint32_t values) const;
+    std::size_t argument_count(const ShaderStep& step) const;
+    std::size_t result_count(const ShaderStep& step) const;
     void find_places();
     void assign_slots(const std::vector<std::uint32_t>& results);
     void run(const ShaderStep& step, std::uint32_t first_value, const ShaderReader& reader, std::size_t first,
@@ -124,6 +141,7 @@ class ShaderProgram {
     std::vector<ShaderStep> steps_;
     std::vector<ShaderTable> tables_;
     std::vector<std::shared_ptr<const ImageTexture>> images_;
+    std::vector<ShaderScript> scripts_;
     std::vector<std::uint32_t> first_value_;  // index of each step's first value
     std::vector<Value> values_;
     std::vector<std::uint32_t> results_;

@@ -20,6 +20,7 @@ struct OperationLanes {
     const ShaderTable* table;
     const ImageTexture* image;
     std::uint32_t mode;
+    const ShaderScript* script;
 };
 
 /// Loops in the order of shader_operations().

@@ -10,6 +10,7 @@
 
 #include "base/checks.h"
 #include "shaders/operations.h"
+#include "shaders/script_kernel.h"
 
 namespace shlight {
 namespace {
@@ -21,7 +22,7 @@ using Parameter = ShaderOperation::Parameter;
 constexpr std::size_t kLanes = 128;
 static_assert(kLanes % 16 == 0);
 constexpr int kPlaces = 5;
-constexpr std::size_t kMostArguments = 16, kMostResults = 8;
+constexpr std::size_t kMostArguments = 128, kMostResults = 32;
 
 const ShaderOperation& operation_of(const ShaderStep& step) {
     return shader_operations()[step.operation];
@@ -30,10 +31,6 @@ const ShaderOperation& operation_of(const ShaderStep& step) {
 /// The place whose difference to the hit a step takes; 0: it is another step.
 int other_place(const ShaderStep& step) {
     return step.kind == Kind::operation && step.operation < kDifferences ? static_cast<int>(step.operation) + 1 : 0;
-}
-
-std::size_t result_count(const ShaderStep& step) {
-    return step.kind == Kind::operation ? operation_of(step).result_count : 1;
 }
 
 void check_table(const ShaderTable& table) {
@@ -46,40 +43,16 @@ void check_table(const ShaderTable& table) {
     }
 }
 
-void check_operation(const ShaderStep& step, std::uint32_t values, std::span<const ShaderTable> tables,
-                     std::size_t images) {
-    if (step.operation >= shader_operations().size()) {
-        reject("steps: there is no operation " + std::to_string(step.operation));
-    }
-    const ShaderOperation& operation = operation_of(step);
-    const std::string name(operation.name);
-    if (step.arguments.size() != operation.argument_count) {
-        reject("steps: " + name + " takes " + std::to_string(operation.argument_count) + " arguments, got " +
-               std::to_string(step.arguments.size()));
-    }
-    for (const std::uint32_t argument : step.arguments) {
-        if (argument >= values) {
-            reject("steps: an argument of " + name + " is no value of an earlier step");
-        }
-    }
-    if (operation.parameter == Parameter::image && step.parameter >= images) {
-        reject("steps: there is no image " + std::to_string(step.parameter));
-    }
-    if (operation.parameter == Parameter::mode && step.parameter >= operation.mode_count) {
-        reject("steps: " + name + " has no mode " + std::to_string(step.parameter));
-    }
-    if (operation.parameter == Parameter::table &&
-        (step.parameter >= tables.size() || tables[step.parameter].sizes.size() != operation.argument_count)) {
-        reject("steps: " + name + " has no table with as many coordinates");
-    }
-}
-
 }  // namespace
 
 ShaderProgram::ShaderProgram(std::vector<ShaderStep> steps, std::vector<ShaderTable> tables,
-                             std::vector<std::shared_ptr<const ImageTexture>> images,
+                             std::vector<std::shared_ptr<const ImageTexture>> images, std::vector<ShaderScript> scripts,
                              const std::vector<std::uint32_t>& results)
-    : steps_(std::move(steps)), tables_(std::move(tables)), images_(std::move(images)), results_(results) {
+    : steps_(std::move(steps)),
+      tables_(std::move(tables)),
+      images_(std::move(images)),
+      scripts_(std::move(scripts)),
+      results_(results) {
     check(results);
     find_places();
     assign_slots(results);
@@ -87,14 +60,20 @@ ShaderProgram::ShaderProgram(std::vector<ShaderStep> steps, std::vector<ShaderTa
 
 void ShaderProgram::check(const std::vector<std::uint32_t>& results) {
     std::for_each(tables_.begin(), tables_.end(), check_table);
+    for (const ShaderScript& script : scripts_) {
+        check_script(script);
+        if (script.argument_count > kMostArguments || script.results.size() > kMostResults) {
+            reject("scripts: one has too many arguments or results");
+        }
+    }
     std::uint32_t values = 0;
     for (const ShaderStep& step : steps_) {
         if (step.kind == Kind::operation) {
-            check_operation(step, values, tables_, images_.size());
+            check_operation(step, values);
             ++operations_;
         }
         first_value_.push_back(values);
-        values += static_cast<std::uint32_t>(shlight::result_count(step));
+        values += static_cast<std::uint32_t>(result_count(step));
     }
     values_.resize(values);
     for (const std::uint32_t result : results) {
@@ -104,11 +83,55 @@ void ShaderProgram::check(const std::vector<std::uint32_t>& results) {
     }
 }
 
+void ShaderProgram::check_operation(const ShaderStep& step, std::uint32_t values) const {
+    if (step.operation >= shader_operations().size()) {
+        reject("steps: there is no operation " + std::to_string(step.operation));
+    }
+    const ShaderOperation& operation = operation_of(step);
+    const std::string name(operation.name);
+    if (operation.parameter == Parameter::script && step.parameter >= scripts_.size()) {
+        reject("steps: there is no script " + std::to_string(step.parameter));
+    }
+    if (step.arguments.size() != argument_count(step)) {
+        reject("steps: " + name + " takes " + std::to_string(argument_count(step)) + " arguments, got " +
+               std::to_string(step.arguments.size()));
+    }
+    for (const std::uint32_t argument : step.arguments) {
+        if (argument >= values) {
+            reject("steps: an argument of " + name + " is no value of an earlier step");
+        }
+    }
+    if (operation.parameter == Parameter::image && step.parameter >= images_.size()) {
+        reject("steps: there is no image " + std::to_string(step.parameter));
+    }
+    if (operation.parameter == Parameter::mode && step.parameter >= operation.mode_count) {
+        reject("steps: " + name + " has no mode " + std::to_string(step.parameter));
+    }
+    if (operation.parameter == Parameter::table &&
+        (step.parameter >= tables_.size() || tables_[step.parameter].sizes.size() != operation.argument_count)) {
+        reject("steps: " + name + " has no table with as many coordinates");
+    }
+}
+
+std::size_t ShaderProgram::argument_count(const ShaderStep& step) const {
+    const ShaderOperation& operation = operation_of(step);
+    return operation.parameter == Parameter::script ? scripts_[step.parameter].argument_count
+                                                    : operation.argument_count;
+}
+
+std::size_t ShaderProgram::result_count(const ShaderStep& step) const {
+    if (step.kind != Kind::operation) {
+        return 1;
+    }
+    const ShaderOperation& operation = operation_of(step);
+    return operation.parameter == Parameter::script ? scripts_[step.parameter].results.size() : operation.result_count;
+}
+
 /// Marks the values that are needed at other places, because a difference of a dependent value is taken.
 void ShaderProgram::find_places() {
     for (std::size_t s = steps_.size(); s-- > 0;) {
         const ShaderStep& step = steps_[s];
-        const auto outputs = std::span(values_).subspan(first_value_[s], shlight::result_count(step));
+        const auto outputs = std::span(values_).subspan(first_value_[s], result_count(step));
         const int other = other_place(step);
         const bool one_place = other > 0 || step.kind == Kind::constant;
         const bool beside = !one_place && std::ranges::any_of(outputs, &Value::beside);
@@ -135,7 +158,7 @@ void ShaderProgram::assign_slots(const std::vector<std::uint32_t>& results) {
         for (const std::uint32_t argument : steps_[s].arguments) {
             last_use[argument] = s;
         }
-        for (std::size_t k = 0; k < shlight::result_count(steps_[s]); ++k) {
+        for (std::size_t k = 0; k < result_count(steps_[s]); ++k) {
             last_use[first_value_[s] + k] = s;
         }
     }
@@ -148,7 +171,7 @@ void ShaderProgram::assign_slots(const std::vector<std::uint32_t>& results) {
     }
     std::vector<std::uint32_t> free;
     for (std::size_t s = 0; s < steps_.size(); ++s) {
-        for (std::size_t k = 0; k < shlight::result_count(steps_[s]); ++k) {
+        for (std::size_t k = 0; k < result_count(steps_[s]); ++k) {
             if (free.empty()) {
                 free.push_back(static_cast<std::uint32_t>(slots_++));
             }
@@ -203,17 +226,19 @@ void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const
             // Without values, which would cost a step of a cheap operation a tenth of its time.
             std::array<const float*, kMostArguments> arguments;
             std::array<float*, kMostResults> results;
-            for (std::size_t i = 0; i < operation.argument_count; ++i) {
+            for (std::size_t i = 0; i < step.arguments.size(); ++i) {
                 arguments[i] = at(step.arguments[i], place);
             }
-            for (std::uint32_t i = 0; i < operation.result_count; ++i) {
+            for (std::uint32_t i = 0; i < result_count(step); ++i) {
                 results[i] = at(first_value + i, place);
             }
             const bool has_table = operation.parameter == Parameter::table;
             const bool has_image = operation.parameter == Parameter::image;
+            const bool has_script = operation.parameter == Parameter::script;
             operation_loops()[step.operation]({arguments.data(), results.data(), count,
                                                has_table ? &tables_[step.parameter] : nullptr,
-                                               has_image ? images_[step.parameter].get() : nullptr, step.parameter});
+                                               has_image ? images_[step.parameter].get() : nullptr, step.parameter,
+                                               has_script ? &scripts_[step.parameter] : nullptr});
         }
     }
 }

@@ -24,6 +24,7 @@ from shlight.nodes.mathematics import map_range, mapping
 from shlight.nodes.metals import conductor, metallic
 from shlight.nodes.noises import musgrave, noise, wave
 from shlight.nodes.normals import bump, normal_map
+from shlight.nodes.osl import osl
 from shlight.nodes.patterns import Bricks, bricks, magic
 from shlight.nodes.photometric import ies
 from shlight.nodes.principled import (
@@ -92,6 +93,7 @@ __all__ = [
     "normal_map",
     "object_value",
     "oren_nayar",
+    "osl",
     "position",
     "preetham",
     "principled",

@@ -10,7 +10,8 @@ import numpy as np
 
 from shlight import _core
 from shlight.nodes.inputs import SOURCES
-from shlight.nodes.values import Step, Value, in_order, operations
+from shlight.nodes.script_registers import CoreScript
+from shlight.nodes.values import Step, Value, in_order, operations, result_count
 
 if TYPE_CHECKING:
     from shlight.nodes.textures import ImageLookup
@@ -34,6 +35,7 @@ class ProgramBuilder:
         self._steps: list[tuple[int, float, int, int, list[int]]] = []
         self._tables: list[tuple[Any, list[int]]] = []
         self._images: list[ImageLookup] = []
+        self._scripts: list[CoreScript] = []
         self._numbers: dict[int, int] = {}  # first value of a step, by id
         self._known: dict[Any, int] = {}  # the same by what the step computes
         self._kept: list[Step] = []  # whose id must not be given to another
@@ -53,7 +55,8 @@ class ProgramBuilder:
 
     def program(self) -> _core.ShaderProgram:
         """The program of all listed steps; waits for pictures that are still being read."""
-        return _core.shader_program(self._steps, self._tables, [lookup.core for lookup in self._images], self._results)
+        images, scripts = [lookup.core for lookup in self._images], [own.core for own in self._scripts]
+        return _core.shader_program(self._steps, self._tables, images, scripts, self._results)
 
     def input_number(self, source: str, index: int | str) -> tuple[int, int]:
         """How the program refers to an input."""
@@ -79,14 +82,18 @@ class ProgramBuilder:
         if step.name == "input":
             source, index, component = step.data
             return (INPUT, 0.0, *self.input_number(source, index), [component]), 1
-        number, _, results = operations()[step.name]
+        number = operations()[step.name][0]
         if isinstance(step.data, float):  # over which a slope's difference is taken
-            return (OPERATION, step.data, number, 0, arguments), results
-        return (OPERATION, 0.0, number, self._resource(step.data), arguments), results
+            return (OPERATION, step.data, number, 0, arguments), result_count(step)
+        return (OPERATION, 0.0, number, self._resource(step.data), arguments), result_count(step)
 
     def _resource(self, data: Any) -> int:
         if data is None or isinstance(data, int):  # no parameter, or a mode
             return data or 0
+        if isinstance(data, CoreScript):
+            if data not in self._scripts:
+                self._scripts.append(data)
+            return self._scripts.index(data)
         if id(data) not in self._resources:
             if isinstance(data, Table):
                 self._resources[id(data)] = len(self._tables)

@@ -24,7 +24,7 @@ LARGEST_COLOR, LARGEST_RADIANCE = 1e10, 1e15  # docs/conventions.md
 @dataclass(frozen=True, eq=False, slots=True)
 class Step:
     """A constant, an input or an operation; `data` is the constant, or (source, index or name, component), or a table,
-    image or mode."""
+    image, script or mode."""
 
     name: str
     arguments: tuple[Value, ...] = ()
@@ -251,11 +251,16 @@ def reflectance(value: Any, name: str) -> Color:
 def steps(name: str, *arguments: Number, data: Any = None) -> tuple[Value, ...]:
     """All results of an operation of the core."""
     values = tuple(number(argument) for argument in arguments)
-    _, _, results = operations()[name]
     step = Step(name, values, data)
+    results = result_count(step)
     if name not in DIFFERENCES and data is None and all(value.constant is not None for value in values):
         return tuple(number(result) for result in _computed(name, tuple(value.constant or 0.0 for value in values)))
     return tuple(Value(step, output) for output in range(results))
+
+
+def result_count(step: Step) -> int:
+    """How many values an operation of the core makes; a script has its own."""
+    return len(step.data.results) if step.name == "script" else operations()[step.name][2]
 
 
 def operation(name: str, *arguments: Number, data: Any = None) -> Value:
@@ -274,7 +279,7 @@ def _computed(name: str, constants: tuple[float, ...]) -> tuple[float, ...]:
     count = len(constants)
     listed: list[tuple[int, float, int, int, list[int]]] = [(0, constant, 0, 0, []) for constant in constants]
     listed.append((2, 0.0, operation_number, 0, list(range(count))))
-    program = _core.shader_program(listed, [], [], list(range(count, count + results)))
+    program = _core.shader_program(listed, [], [], [], list(range(count, count + results)))
     return tuple(float(value) for value in program.evaluate([], 1)[:, 0])
 
 
