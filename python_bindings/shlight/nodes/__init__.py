@@ -13,6 +13,7 @@ from shlight.nodes.inputs import (
     attribute,
     backfacing,
     barycentric,
+    edge_distance,
     geometric_normal,
     normal,
     object_value,
@@ -36,7 +37,7 @@ from shlight.nodes.principled import (
     refraction,
     rising_lobes,
 )
-from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, translucent, transparent
+from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, toon, translucent, transparent
 from shlight.nodes.skies import Sky, hosek_wilkie, preetham
 from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.subsurface import subsurface
@@ -65,6 +66,7 @@ __all__ = [
     "disney_diffuse",
     "disney_sheen",
     "disney_subsurface",
+    "edge_distance",
     "emission",
     "equal",
     "gabor",
@@ -105,6 +107,7 @@ __all__ = [
     "select",
     "sqrt",
     "subsurface",
+    "toon",
     "towards_viewer",
     "translucent",
     "transparent",
