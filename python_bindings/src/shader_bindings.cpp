@@ -152,6 +152,9 @@ LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "bumped_lambert") {
         return DiffuseShape{Diffuse::bumped};
     }
+    if (kind == "toon" || kind == "glossy_toon") {
+        return ToonShape{kind != "toon"};
+    }
     if (const auto microfacets = microfacets_of(kind, ior)) {
         return *microfacets;
     }

@@ -58,7 +58,7 @@ def build(scene):
     bpy.ops.mesh.primitive_plane_add(size=12, location=(0, 0, -1))
     material = bpy.data.objects["Cube"].active_material
     tree = material.node_tree
-    tree.links.new(tree.nodes.new("ShaderNodeBsdfToon").outputs[0], tree.nodes["Material Output"].inputs[0])
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfHair").outputs[0], tree.nodes["Material Output"].inputs[0])
     bpy.ops.ed.undo_push(message="built")
     bpy.data.objects["Cube"].rotation_euler.z = 0.2
     bpy.ops.ed.undo_push(message="turned")

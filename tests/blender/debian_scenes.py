@@ -203,7 +203,7 @@ def sky(studio):
 def dark(studio):
     """Lit by a lamp that is not yet turned on, with nothing behind the plane's edge."""
     studio.plane(1.0, studio.material("ShaderNodeBsdfPrincipled"))
-    studio.box(material=studio.material("ShaderNodeBsdfToon"))
+    studio.box(material=studio.material("ShaderNodeBsdfHair"))
     studio.lamp("POINT", 0, (0, 0, 2))
     studio.scene.render.film_transparent = True
 

@@ -63,7 +63,7 @@ def still_life(studio: Any, tmp_path: Path) -> Iterator[Any]:
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.05, 0.9, 0.1, 1.0
     studio.scene.shlight.pixel_samples = 0
     studio.scene.cycles.pixel_filter_type = "GAUSSIAN"
-    glass = studio.material("ShaderNodeBsdfToon", name="Bottle", Color=(0.8, 0.8, 0.8))
+    glass = studio.material("ShaderNodeBsdfHair", name="Bottle", Color=(0.8, 0.8, 0.8))
     studio.ball(0.7, glass, location=(-0.3, -1.8, 0.7))
     beside = studio.picture([[(0.9, 0.1, 0.1), (0.1, 0.9, 0.1)]], is_float=False)
     beside.filepath_raw, beside.file_format = str(tmp_path / "beside.png"), "PNG"
@@ -121,7 +121,7 @@ def test_figures_pictures_and_places_are_true(still_life: Any) -> None:
     (place,) = figures["differences"]
     assert place["place"] == "Object 'Ball'"
     assert place["materials"] == ["Bottle"]
-    assert any("Toon BSDF is not supported" in message for message in place["messages"])
+    assert any("Hair BSDF is not supported" in message for message in place["messages"])
     there = relative[int(place["y"]), int(place["x"])]
     assert there * place["difference"] > 0.1
 

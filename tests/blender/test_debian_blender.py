@@ -156,7 +156,7 @@ def test_a_dark_frame_is_black(pictures: dict[str, Any]) -> None:
     assert 0.0 < image[..., 3].mean() < 1.0
     assert abs(image[..., 3] - reference[..., 3]).mean() <= 5e-3
     # Messages are ordered by their effect on the picture.
-    parts = ("no light that shlight can render", "Toon BSDF")
+    parts = ("no light that shlight can render", "Hair BSDF")
     assert all(part in line for part, line in zip(parts, pictures["dark"]["messages"], strict=True))
 
 
@@ -339,7 +339,7 @@ def test_comparing_in_the_window(tmp_path: Path) -> None:
     assert found["unsaved_images"] == found["unsaved_after_drag"] == []
     assert found["shown"] == "shlight Comparison"
     assert found["places"][0][0] == "Object 'Cube'"
-    assert any("Toon BSDF is not supported" in message for message in found["places"][0][1])
+    assert any("Hair BSDF is not supported" in message for message in found["places"][0][1])
     assert abs(found["split"] - 0.25) <= 0.01
     assert found["corner_on_screen"] == found["corner"]
     assert found["marker"] == 255

@@ -235,7 +235,7 @@ def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
 
 
 def test_what_is_left_out_of_a_dark_scene_is_named_first(studio: Any) -> None:
-    studio.plane(material=studio.material("ShaderNodeBsdfToon"))
+    studio.plane(material=studio.material("ShaderNodeBsdfHair"))
     studio.camera()
     assert export().dark == messages()[0]
     assert messages()[0] == "Scene 'Scene': it has no light that shlight can render; the picture is black"

@@ -208,7 +208,7 @@ def test_nothing_is_bevelled_or_occluded(studio: Any) -> None:
 @pytest.mark.parametrize(
     ("shader", "inputs", "named"),
     [
-        ("ShaderNodeBsdfToon", {}, "Toon BSDF is not supported"),
+        ("ShaderNodeBsdfHair", {}, "Hair BSDF is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Thin_Film_Thickness": 300.0}, "'Thin Film Thickness' is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),

@@ -64,7 +64,7 @@ def test_what_can_change_more_is_named_first(studio: Any, first_is_large: bool) 
     small, large = {"scale": (0.1, 0.1, 0.1)}, {"scale": (1.0, 1.0, 1.0)}
     first, second = (large, small) if first_is_large else (small, large)
     studio.box(name="A", location=(-1, 0, 0), **first).data.vertices[0].co.x = np.nan
-    for name, size, kind in (("C", first, "BsdfToon"), ("D", second, "BsdfHair")):
+    for name, size, kind in (("C", first, "BsdfHairPrincipled"), ("D", second, "BsdfHair")):
         made = studio.material(f"ShaderNode{kind}", name=name)
         studio.box(material=made, location=(0, 1, 0), **size)
     studio.lamp("SPOT", -1.0 if first_is_large else -100.0, (0, 0, 3))

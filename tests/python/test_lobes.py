@@ -175,6 +175,33 @@ def test_anisotropic_lobes_reflect_no_more_than_they_get() -> None:
             assert radiance(shader, None).max() <= 1 + 1e-3
 
 
+def toon_value(glossy: bool, size: float, smooth: float, light: Doubles) -> Doubles:
+    axis = VIEW * [-1, 0, 1] if glossy else np.array([0.0, 0.0, 1.0])
+    angle = np.arccos(np.clip(light @ axis, -1, 1)) / (math.pi / 2)
+    whole = min(size + smooth, 1.0)
+    share = np.where(angle > whole, 0.0, 1 - np.maximum(angle - size, 0) / max(smooth, 1e-9))
+    return np.asarray(share / (2 * math.pi * (1 - math.cos(whole * math.pi / 2))))
+
+
+@pytest.mark.parametrize("glossy", [False, True])
+@pytest.mark.parametrize("smooth", [0.0, 0.5, 1.0])
+def test_toon_is_its_formula(glossy: bool, smooth: float) -> None:
+    """Without extent the light shows f·cos. Of others the sum of 80,000 directions errs where an edge crosses them."""
+    for size in (0.1, 0.5, 0.9):
+        makes = number(size), nodes.uv().x * (2 * size)
+        shaders = [nodes.toon(1.0, own, smooth, glossy=glossy) for own in makes]
+        for sun, angle in itertools.product(LIGHTS, (0.0, 0.2, 1.0)):
+            truth = reflected(lambda ways, s=size: toon_value(glossy, s, smooth, ways), sun, angle)
+            for shader in shaders:
+                found = radiance(shader, sun, angle)[0]
+                assert abs(found - truth) <= (5e-3 if angle else 3e-4) * truth + 3e-4, (size, sun, angle)
+        ways, share = in_cone(
+            VIEW * [-1, 0, 1] if glossy else np.array([0.0, 0.0, 1.0]), min(size + smooth, 1) * math.pi
+        )
+        albedo = float((toon_value(glossy, size, smooth, ways) * (ways[:, 2] > 0) * share).sum())
+        assert radiance(shaders[0], None)[0] == pytest.approx(albedo, rel=2e-3)
+
+
 def sheen_value(roughness: float, light: Doubles) -> Doubles:
     a, b = (float(energy.sheen_transform(name, roughness, VIEW[2:])[0]) for name in ("a", "b"))
     x, y, z = light.T

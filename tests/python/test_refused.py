@@ -39,6 +39,8 @@ OF_NODES: dict[str, tuple[Any, str, tuple[Any, ...]]] = {
     "extinction": (lambda k: nodes.conductor(1.5, k, 0.5), "extinction", NO_COLOR[:1] + NO_COLOR[2:4]),
     "fibres": (lambda roughness: nodes.microfibre(0.5, roughness), "roughness", ("high", NAN, INF)),
     "velvet": (lambda sigma: nodes.velvet(0.5, sigma), "sigma", ("high", NAN, INF)),
+    "toon": (lambda size: nodes.toon(0.5, size, 0.0), "size", ("high", NAN, INF)),
+    "smooth": (lambda smooth: nodes.toon(0.5, 0.5, smooth), "smooth", ("high", NAN, INF)),
     "disney": (nodes.disney_sheen, "tint", NO_COLOR),
     "body": (lambda radius: nodes.subsurface(0.5, radius), "radius", NO_COLOR[:1] + NO_COLOR[2:4]),
     "product": (nodes.lambert(0.5).__mul__, "factor", NO_COLOR),

@@ -162,6 +162,12 @@ def _sheen(inputs: NodeInputs) -> Shader:
     return made(inputs.color("Color"), width, at=inputs.linked_vector("Normal"))
 
 
+def _toon(inputs: NodeInputs) -> Shader:
+    size, smooth = inputs.number("Size"), inputs.number("Smooth")
+    is_glossy, at = inputs.node.component == "GLOSSY", inputs.linked_vector("Normal")
+    return nodes.toon(positive(inputs.color("Color")), size, smooth, glossy=is_glossy, at=at)
+
+
 def _diffuse(inputs: NodeInputs) -> Shader:
     return nodes.oren_nayar(
         positive(inputs.color("Color")), inputs.number("Roughness"), at=inputs.linked_vector("Normal")
@@ -253,6 +259,7 @@ SHADERS: dict[str, ReadNode] = {
     "BSDF_PRINCIPLED": read_principled,
     "BSDF_REFRACTION": _glass,
     "BSDF_SHEEN": _sheen,
+    "BSDF_TOON": _toon,
     "BSDF_VELVET": _sheen,
     "SUBSURFACE_SCATTERING": _subsurface,
     "BSDF_TRANSLUCENT": lambda i: nodes.translucent(positive(i.color("Color")), i.linked_vector("Normal")),

@@ -22,7 +22,7 @@ namespace shlight {
 /// Mirrors show a light or not: their derivatives are 0, as are those of hidden lights and of polygons without area or
 /// seen edge-on. A derivative beyond the range of T is the largest number of T. by_roughness moves the roughness of all
 /// GGX lobes of the material together, and leaves the lobes' weights, as of layers, alone; other lobes have none.
-/// Precondition: no stretched lobes (is_stretched()).
+/// Precondition: no lobes of two widths (has_two_widths()).
 class GradientShader {
   public:
     explicit GradientShader(Bsdf bsdf) : bsdf_(std::move(bsdf)) {}

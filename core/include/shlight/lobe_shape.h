@@ -111,9 +111,30 @@ struct GgxShape {
     auto operator<=>(const GgxShape&) const = default;
 };
 
+/// Blender's Toon BSDF: f·cos = I(θ) / 2π(1 - cos a) without a cosine, θ being the angle from the normal, or from the
+/// mirror direction. I is 1 up to size · π/2 and falls linearly over smooth · π/2, to 0 unless it is cut at the angle
+/// a = min(size + smooth, 1) π/2.
+struct ToonShape {
+    bool glossy;  ///< θ is from the mirror direction
+    double size = 1, smooth = 0;
+
+    bool is_glossy() const { return glossy; }
+    double width() const;
+    double value(const Vec3d& wi, const Vec3d& wo) const;
+    double albedo(double cos_theta_o) const;
+    /// Draws evenly from the cone of the angle a.
+    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
+    double density(const Vec3d& wo, const Vec3d& wi) const;
+    double largest_density(const Vec3d& wo) const;
+    ToonShape sampled() const { return *this; }
+
+    // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
+    auto operator<=>(const ToonShape&) const = default;
+};
+
 struct TableShape;
 
-using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape, TableShape>;
+using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape, ToonShape, TableShape>;
 
 /// A colour channel of a table, times cosθ_i.
 struct TableShape {
@@ -138,16 +159,20 @@ struct TableShape {
 
 /// Half width of the peak at the mirror direction [rad]; 1 for shapes without a peak.
 double lobe_width(const LobeShape& shape);
-/// Whether f·cos depends on the azimuth of ω_o from the surface's tangent on.
+/// Whether f·cos depends on the azimuth of ω_o from the surface's tangent on; toon, whose edges no two hits may share,
+/// counts as such.
 bool is_anisotropic(const LobeShape& shape);
 /// Whether it is one of microfacets with two widths.
 bool is_stretched(const LobeShape& shape);
+/// Whether it is that or toon: two numbers vary from hit to hit, and there are no fits.
+bool has_two_widths(const LobeShape& shape);
 /// Whether it is Diffuse::bumped, whose ω_o is a normal.
 bool is_bumped(const LobeShape& shape);
 /// Lanes take this number of each view: the azimuth of an anisotropic table, or the width of another shape.
 double lobe_parameter(const LobeShape& shape);
 
-/// These numbers may differ from hit to hit: members of GgxShape, or the azimuth of an anisotropic table.
+/// These numbers may differ from hit to hit: members of GgxShape, those of ToonShape as width and across, or the
+/// azimuth of an anisotropic table.
 struct LobeForm {
     float width = 1, across = 0, azimuth = 0;
 };

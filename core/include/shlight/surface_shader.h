@@ -39,7 +39,8 @@ struct ShadedLobe {
     LobeShape shape;
     std::uint32_t weight;  ///< colour; NaN and infinity count as 0
     /// Replaces GgxShape::alpha; clamped to 0 … 1. Of a stretched shape (is_stretched()) it is that along a tangent,
-    /// and four results follow: alpha across the tangent, and the tangent, a world vector of any length.
+    /// and four results follow: alpha across the tangent, and the tangent, a world vector of any length. Of toon it is
+    /// its size, and its smoothness follows.
     std::optional<std::uint32_t> alpha;
     std::optional<std::uint32_t> normal;  ///< world vector of any length; none or 0: the interpolated normal
     bool several_bounces = false;         ///< the weight compensates the energy lost between microfacets

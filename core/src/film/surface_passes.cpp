@@ -131,13 +131,13 @@ void SurfacePasses::add_mattes(const Surface& surface, double share, double* pix
 Rgb SurfacePasses::color(const SurfaceLobe& lobe, const Surface& surface) {
     const double cosine = std::clamp(glm::dot(lobe.normal, surface.towards_viewer), 0.0, 1.0);
     const auto albedo_of = [&](const LobeShape& shape) {
-        return is_stretched(shape) ? lobe_albedo(shape, cosine) : table(shape).albedo(lobe_width(shape), cosine);
+        return has_two_widths(shape) ? lobe_albedo(shape, cosine) : table(shape).albedo(lobe_width(shape), cosine);
     };
     if (std::holds_alternative<TableShape>(lobe.shape)) {
         return lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
     }
     double albedo = albedo_of(lobe.shape);
-    if (is_glossy(lobe.shape) && !lobe.several_bounces) {
+    if (!lobe.several_bounces) {
         albedo /= albedo_of(sampled_shape(lobe.shape));
     }
     return lobe.weight * static_cast<float>(albedo);

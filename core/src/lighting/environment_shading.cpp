@@ -19,7 +19,7 @@ namespace shlight {
 namespace {
 
 /// Directions that a lobe is summed over, along each side of the unit square: a narrow one beside its harmonics, and a
-/// stretched one without any.
+/// one of two widths without any.
 constexpr std::size_t kDirectionsAcross = 16, kStretchedAcross = 32;
 
 /// Points of the unit square that these are made of.
@@ -109,7 +109,7 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
         auto& plans = plans_.emplace_back();
         auto& width_plans = width_plans_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            const bool varies = lobe.varying_width != 0 && !is_stretched(lobe.shape);
+            const bool varies = lobe.varying_width != 0 && !has_two_widths(lobe.shape);
             plans.push_back(varies ? Plan() : plan(lobe.shape));
             width_plans.push_back(varies ? std::make_unique<const ValuesByNumber<Plan>>(TabulatedWidths::kCount)
                                          : nullptr);
@@ -141,7 +141,7 @@ bool EnvironmentShading::splits(std::size_t material, std::size_t lobe, const Lo
 }
 
 EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const {
-    if (is_mirror(shape) || is_stretched(shape)) {
+    if (is_mirror(shape) || has_two_widths(shape)) {
         return {};
     }
     const EnvironmentMap& map = *environment_->map();
@@ -396,7 +396,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
     Harmonics harmonics(environment_->map()->coefficients.channels);
     for_each_lobe(points,
                   [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
-                      if (is_stretched(shape)) {
+                      if (has_two_widths(shape)) {
                           return;
                       }
                       const float cosine = points.cos_theta_o[i];
@@ -411,7 +411,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
             const std::uint32_t material = points.material[i];
             const LobeForm& form = points.forms(i)[lobe];
             const double cosine = points.cos_theta_o[i];
-            const bool whole = is_stretched(shape);
+            const bool whole = has_two_widths(shape);
             if (whole && points.weight(i, lobe) == Rgb(0)) {
                 return;
             }

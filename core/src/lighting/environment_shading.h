@@ -50,7 +50,7 @@ class EnvironmentShading {
     };
     /// How a lobe is shaded under a picture.
     struct Plan {
-        std::shared_ptr<const ShProjection> lobe;  // null: a mirror, or stretched
+        std::shared_ptr<const ShProjection> lobe;  // null: a mirror, or of two widths
         std::vector<Choice> choices;               // of each tabulated view
     };
     /// A lobe's plan, or the plans between which its width lies.

@@ -203,11 +203,13 @@ void LobeIntegrator::find_keys(const LobeViews& lobe, Lights& lights, std::span<
     rules_.resize(view_of.size());
     choose_rules(lobe, lights, view_of);
     const int cheap = cheap_rule(lights);
+    // Rules would see light on one side of an edge alone.
+    const bool has_edge = std::holds_alternative<ToonShape>(lobe.shape());
     for (std::size_t i = 0; i < view_of.size(); ++i) {
         const std::uint32_t view = view_of[i];
         const int order = lobe.order(view);
         const Key otherwise = order > 0 ? static_cast<Key>(kHarmonics + order) : kOutline;
-        const bool by_rule = rules_[i] != kNoRule && (rules_[i] <= cheap || order == 0);
+        const bool by_rule = !has_edge && rules_[i] != kNoRule && (rules_[i] <= cheap || order == 0);
         const Key key = by_rule ? rules_[i] : otherwise;
         keys_[i] = rules_[i] == kHidden || lobe.is_black(view) ? kNothing : key;
     }
@@ -309,7 +311,7 @@ void LobeIntegrator::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons,
 
 template <class Lights>
 void LobeIntegrator::by_largest_order(LobeViews& lobe, const Lights& lights) {
-    if (!(lobe.relative_tolerance() > 0) || lobe.is_stretched()) {
+    if (!(lobe.relative_tolerance() > 0) || lobe.has_two_widths()) {
         return;
     }
     const int order = lobe.largest_order();
@@ -324,7 +326,7 @@ void LobeIntegrator::by_largest_order(LobeViews& lobe, const Lights& lights) {
 
 template <class Function>
 void LobeIntegrator::for_each_shape(const LobeViews& lobe, const Function& function) const {
-    if (!lobe.is_stretched()) {
+    if (!lobe.has_two_widths()) {
         function(lobe.shape(), 0, items_.size());
         return;
     }

@@ -12,6 +12,7 @@
 #include "lobes/boundary_kernel.h"
 #include "lobes/boundary_path.h"
 #include "lobes/boundary_quadrature.h"
+#include "lobes/toon.h"
 #include "math/gauss_legendre.h"
 
 namespace shlight {
@@ -178,6 +179,9 @@ BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, s
                                    double tolerance, double albedo) {
     if (!(cos_theta_o > 0)) {
         return {0, 0, 0};
+    }
+    if (const auto* toon = std::get_if<ToonShape>(&shape)) {
+        return toon_boundary_integral(*toon, cos_theta_o, arcs, tolerance);
     }
     const Vec3d view = resolved_view(cos_theta_o);
     const RadialSums radial(shape, view.z, tolerance, albedo);

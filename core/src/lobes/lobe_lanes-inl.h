@@ -25,6 +25,7 @@
 #include "lobes/lambert-inl.h"
 #include "lobes/rough_diffuse-inl.h"
 #include "lobes/table-inl.h"
+#include "lobes/toon-inl.h"
 #include "shlight/lobe_shape.h"
 
 HWY_BEFORE_NAMESPACE();

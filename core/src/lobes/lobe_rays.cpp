@@ -86,6 +86,18 @@ HWY_INLINE Vectors sample(const GgxShape& shape, const Vec3d& view, V<Floats> u,
             hn::Sub(twice.z, all(d, own.z))};
 }
 
+HWY_INLINE Vectors sample(const ToonShape& shape, const Vec3d& view, V<Floats> u, V<Floats> v) {
+    const Floats d;
+    const auto below = hn::Mul(u, all(d, 1 - std::cos(ToonCone(shape).outer)));
+    const auto sine = hn::Sqrt(hn::Mul(below, hn::Sub(all(d, 2), below)));
+    const auto z = hn::Sub(all(d, 1), below);
+    const auto azimuth = hn::Mul(all(d, 2 * std::numbers::pi), v);
+    const auto x = hn::Mul(sine, hn::Cos(d, azimuth));
+    const glm::dmat3 frame = toon_frame(shape, view);
+    return {hn::MulAdd(all(d, frame[0].x), x, hn::Mul(all(d, frame[2].x), z)), hn::Mul(sine, hn::Sin(d, azimuth)),
+            hn::MulAdd(all(d, frame[0].z), x, hn::Mul(all(d, frame[2].z), z))};
+}
+
 template <class Shape>
 void sample_all(const Shape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
                 const RayVectors& directions) {

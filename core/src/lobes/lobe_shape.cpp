@@ -13,12 +13,16 @@ double lobe_width(const LobeShape& shape) {
 
 bool is_anisotropic(const LobeShape& shape) {
     const auto* own = std::get_if<TableShape>(&shape);
-    return own != nullptr ? !own->table->is_isotropic() : is_stretched(shape);
+    return own != nullptr ? !own->table->is_isotropic() : has_two_widths(shape);
 }
 
 bool is_stretched(const LobeShape& shape) {
     const auto* own = std::get_if<GgxShape>(&shape);
     return own != nullptr && own->across != 0;
+}
+
+bool has_two_widths(const LobeShape& shape) {
+    return is_stretched(shape) || std::holds_alternative<ToonShape>(shape);
 }
 
 bool is_bumped(const LobeShape& shape) {
@@ -36,6 +40,9 @@ LobeForm lobe_form(const LobeShape& shape) {
     if (const auto* table = std::get_if<TableShape>(&shape)) {
         return {width, 0, static_cast<float>(table->azimuth)};
     }
+    if (const auto* toon = std::get_if<ToonShape>(&shape)) {
+        return {static_cast<float>(toon->size), static_cast<float>(toon->smooth)};
+    }
     const auto* ggx = std::get_if<GgxShape>(&shape);
     return ggx != nullptr ? LobeForm{width, static_cast<float>(ggx->across), static_cast<float>(ggx->azimuth)}
                           : LobeForm{width};
@@ -47,6 +54,8 @@ LobeShape with_form(const LobeShape& shape, const LobeForm& form) {
         ggx->alpha = form.width;
         // Lobes that a hit does not have keep the form of a new LobeForm.
         ggx->across = ggx->across != 0 ? std::max(form.across, form.width) : 0.0F;
+    } else if (auto* toon = std::get_if<ToonShape>(&result)) {
+        *toon = {toon->glossy, form.width, form.across};
     }
     return with_azimuth(result, form.azimuth);
 }

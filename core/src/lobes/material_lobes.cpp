@@ -28,10 +28,10 @@ MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tole
         }
         lobes_.push_back(lobe);
         const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
-        const bool stretched = is_stretched(lobe.shape);
-        grids_.push_back(lobe.varying_width != 0 && ggx != nullptr && !stretched ? fit_grid(*ggx, order) : nullptr);
+        const bool unfitted = has_two_widths(lobe.shape);
+        grids_.push_back(lobe.varying_width != 0 && ggx != nullptr && !unfitted ? fit_grid(*ggx, order) : nullptr);
         anisotropic_.push_back(
-            shlight::is_anisotropic(lobe.shape) && !stretched
+            shlight::is_anisotropic(lobe.shape) && !unfitted
                 ? anisotropic_fit(std::get<TableShape>(lobe.shape), auto_order_ ? lobe.only_order : order)
                 : nullptr);
         if (!auto_order_) {

@@ -58,7 +58,7 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     if (!neighbours_.empty() && !is_black()) {
         layout_ = neighbours_[FitGrid::kNeighbours * weighed_.front()];
     }
-    chooses_ = is_stretched() || (material.auto_order() && !orders().empty());
+    chooses_ = has_two_widths() || (material.auto_order() && !orders().empty());
     judged_ = judged;
     relative_tolerance_ = 0;
     has_boosts_ = false;
@@ -85,7 +85,7 @@ void LobeViews::find_parameters(const FitGrid* grid) {
             azimuths_[view] = form(view).azimuth;
         }
     }
-    if (is_stretched()) {
+    if (has_two_widths()) {
         for (const std::uint32_t view : weighed_) {
             widths_[view] = form(view).width;
         }
@@ -125,7 +125,7 @@ void LobeViews::find_albedos() {
         for (const std::uint32_t view : weighed_) {
             const double cosine = positions_->cosine()[view];
             albedo_[view] =
-                static_cast<float>(is_stretched() ? lobe_albedo(shape(view), cosine) : lobe_->albedo(cosine));
+                static_cast<float>(has_two_widths() ? lobe_albedo(shape(view), cosine) : lobe_->albedo(cosine));
         }
         return;
     }

@@ -63,7 +63,7 @@ class LobeViews {
     /// Whether it is that of an anisotropic table, which has harmonics of its own.
     bool is_anisotropic() const { return anisotropic_ != nullptr; }
     /// Whether each view has a shape of its own, and no harmonics.
-    bool is_stretched() const { return shlight::is_stretched(lobe_->shape); }
+    bool has_two_widths() const { return shlight::has_two_widths(lobe_->shape); }
     const ViewPositions& positions() const { return *positions_; }
 
     /// Whether the cheapest method is chosen for each light; otherwise all lights take harmonics of one order.
@@ -88,7 +88,7 @@ class LobeViews {
 
     /// Permitted error as a share of the light's radiance, where it exceeds absolute_tolerance(); 0: none.
     double relative_tolerance() const { return relative_tolerance_; }
-    /// Precondition: not is_stretched().
+    /// Precondition: not has_two_widths().
     int largest_order() const { return orders().back(); }
     /// Error of the radiance at largest_order(); only if chooses().
     double error_of_largest_order(std::size_t view) const;

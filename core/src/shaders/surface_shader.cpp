@@ -28,7 +28,7 @@ void check_surface_shader(const SurfaceShader& shader) {
     };
     for (const ShadedLobe& lobe : shader.lobes) {
         check("weight", lobe.weight, 3);
-        check("alpha", lobe.alpha, is_stretched(lobe.shape) ? 5 : 1);
+        check("alpha", lobe.alpha, is_stretched(lobe.shape) ? 5 : has_two_widths(lobe.shape) ? 2 : 1);
         check("normal", lobe.normal, 3);
         check("leans_from", lobe.leans_from, 3);
         if (lobe.subsurface) {

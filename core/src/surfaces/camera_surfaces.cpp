@@ -349,8 +349,10 @@ LobeShape CameraSurfaces::laid_out(const Surface& surface, const LobeShape& shap
 
 LobeShape CameraSurfaces::varied(const Surface& surface, const ShadedLobe& lobe, const Vec3d& normal) const {
     LobeForm form{width(surface, *lobe.alpha)};
-    if (is_stretched(lobe.shape)) {
+    if (has_two_widths(lobe.shape)) {
         form.across = width(surface, *lobe.alpha + 1);
+    }
+    if (is_stretched(lobe.shape)) {
         const ShadingFrame frame = shading_frame(surface.point.position, normal, surface.towards_viewer);
         const Vec3d tangent = vector(surface, *lobe.alpha + 2);
         const double x = glm::dot(tangent, frame.x);

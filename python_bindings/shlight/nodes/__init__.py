@@ -35,7 +35,7 @@ from shlight.nodes.principled import (
     refraction,
     rising_lobes,
 )
-from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, translucent, transparent
+from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, toon, translucent, transparent
 from shlight.nodes.skies import Sky, hosek_wilkie, preetham
 from shlight.nodes.spectra import blackbody, wavelength
 from shlight.nodes.subsurface import subsurface
@@ -103,6 +103,7 @@ __all__ = [
     "select",
     "sqrt",
     "subsurface",
+    "toon",
     "towards_viewer",
     "translucent",
     "transparent",

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from shlight import _core
-from shlight._arrays import checked_number
+from shlight._arrays import checked_flag, checked_number
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.rays import Ray, color_on_ray, has_filters, on_ray, with_vectors
@@ -47,7 +47,8 @@ class Subsurface:
 class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
-    # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; one lobe of a Bsdf; or microfacets,
+    # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; one lobe of a Bsdf; "toon" and
+    # "glossy_toon", whose alpha is the size and `rest` the smoothness; or microfacets,
     # "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel factor 1, and the same with "_schlick" or "_dielectric" for
     # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks; with
     # "stretched_" before it they have two widths: `rest` is alpha across the tangent, and the three of the tangent
@@ -327,6 +328,17 @@ def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
 def translucent(albedo: Varying, normal: Vector | None = None) -> Shader:
     """Lambert's reflection of light from the other side: Blender's Translucent BSDF."""
     return Shader((Lobe("translucent", reflectance(albedo, "albedo"), normal=normal),))
+
+
+def toon(tint: Varying, size: Number, smooth: Number, *, glossy: bool = False, at: Vector | None = None) -> Shader:
+    """Light within a cone about the normal counts evenly, and no other: Blender's Toon BSDF, component Diffuse.
+
+    The cone's half angle is size * 90°; from there on light counts less and less, over smooth * 90°, both clamped to
+    0 … 1. glossy: the cone is about the mirror direction of the view instead. Raises ValueError naming an argument.
+    """
+    kind = "glossy_toon" if checked_flag("glossy", glossy) else "toon"
+    own, rest = clamp(number(size, "size")), (clamp(number(smooth, "smooth")),)
+    return Shader((Lobe(kind, reflectance(tint, "tint"), own, None if at is None else vector(at, "at"), rest=rest),))
 
 
 def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vector | None = None) -> Shader:
