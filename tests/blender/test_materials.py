@@ -170,9 +170,9 @@ def test_objects_without_material_or_nodes(studio: Any) -> None:
 # --- what is not supported
 
 
-def linked_wireframe(material: Any, socket: Any) -> Any:
-    """Links a Wireframe node, which is not supported, to a socket of the material's tree."""
-    node = material.node_tree.nodes.new("ShaderNodeWireframe")
+def linked_point_info(material: Any, socket: Any) -> Any:
+    """Links a Point Info node, which is not supported, to a socket of the material's tree."""
+    node = material.node_tree.nodes.new("ShaderNodePointInfo")
     material.node_tree.links.new(node.outputs[0], socket)
     return node
 
@@ -181,7 +181,7 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
     studio.area()
     studio.camera()
     material = studio.material(name="Wood", Color=(0.25, 0.5, 0.75))
-    linked_wireframe(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
+    linked_point_info(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
     studio.plane(material=material)
     (line,) = studio.messages(most=99)
     assert "Material 'Wood'" in line
@@ -244,7 +244,7 @@ def test_volumes_and_unknown_nodes_are_named(studio: Any) -> None:
     tree = material.node_tree
     output = tree.get_output_node("CYCLES")
     tree.links.new(tree.nodes.new("ShaderNodeVolumeScatter").outputs[0], output.inputs["Volume"])
-    linked_wireframe(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
+    linked_point_info(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
     studio.plane(material=material)
     text = "\n".join(studio.messages(most=99))
     for part in ("scattering is not supported", "'Coat Weight'"):

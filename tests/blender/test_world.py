@@ -234,9 +234,9 @@ def test_a_node_that_is_not_supported_is_named(studio: Any) -> None:
     studio.camera()
     texture = set_picture(studio, gradient())
     tree = studio.scene.world.node_tree
-    tree.links.new(tree.nodes.new("ShaderNodeWireframe").outputs[0], texture.inputs["Vector"])
+    tree.links.new(tree.nodes.new("ShaderNodePointInfo").outputs[0], texture.inputs["Vector"])
     (message,) = studio.messages()
-    assert "World 'World', node 'Wireframe': Wireframe is not supported" in message
+    assert "World 'World', node 'Point Info': Point Info is not supported" in message
 
 
 def test_light_that_misses_the_tolerance_is_told(studio: Any) -> None:

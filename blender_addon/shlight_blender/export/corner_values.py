@@ -32,6 +32,11 @@ def at_corners(part: MeshArrays, to_world: Array, object_values: Sequence[float]
         return np.full(corners.shape[:2], matrix[component // 4, component % 4])
     if source == "barycentric":
         return np.broadcast_to(np.eye(3)[1 + component], corners.shape[:2])
+    if source == "height":
+        edge = places[:, (component + 2) % 3] - places[:, (component + 1) % 3]
+        up = np.cross(edge, places[:, component] - places[:, (component + 1) % 3])
+        heights = np.linalg.norm(up, axis=1) / np.maximum(np.linalg.norm(edge, axis=1), 1e-30)
+        return np.repeat(heights[:, None], 3, axis=1)
     if source == "object_value" and int(index) < len(object_values):
         return np.full(corners.shape[:2], object_values[int(index)])
     face = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])

@@ -244,6 +244,30 @@ def fresnel_of(cosine: Value, ior: Value) -> Value:
     return select(square > 0.0, 0.5 * a * a * (1.0 + b * b), 1.0)
 
 
+def _wireframe(inputs: NodeInputs) -> Value:
+    width, view = inputs.number("Size"), inputs.reader.surroundings.view
+    if inputs.node.use_pixel_size:
+        if view is None:
+            inputs.remark("the camera is not known here; a pixel is 0 wide")
+        width = width * (number(0.0) if view is None else _pixel(view))
+    return nodes.edge_distance() < 0.5 * width
+
+
+def _pixel(view: View) -> Value:
+    """The width of a pixel where the hit is, the mean of two directions across the surface that Cycles takes for it."""
+    n, place = nodes.geometric_normal(), _in_camera(view)
+    first = normalize(Vector(n.z - n.y, n.x - n.z, n.y - n.x))
+    to_viewer = nodes.towards_viewer()
+    width = _across(dot(first, to_viewer), dot(cross(n, first), to_viewer)) * view.pixel
+    ray = normalize(place)
+    return width if view.orthographic else width * place.z * _across(ray.x, ray.y)
+
+
+def _across(first: Value, second: Value) -> Value:
+    """The mean length of two unit vectors without their parts along a direction."""
+    return 0.5 * (sqrt(1.0 - first * first) + sqrt(1.0 - second * second))
+
+
 def _own_normal(inputs: NodeInputs) -> Vector:
     return inputs.vector_or("Normal", nodes.normal())
 
@@ -328,5 +352,6 @@ INPUT_NODES: dict[str, ReadNode] = {
     "NORMAL_MAP": _normal_map,
     "BUMP": _bump,
     "BEVEL": _bevel,
+    "WIREFRAME": _wireframe,
     "AMBIENT_OCCLUSION": _ambient_occlusion,
 }

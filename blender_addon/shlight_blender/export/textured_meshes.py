@@ -226,7 +226,10 @@ def with_even_emission(
         part = arrays.chosen(slots == slot, slots)
         pieces = _cut_surface(part, surfaces[slot].varying, to_world, object_values, MOST_PIECES // len(varying))
         colors = share_colors(pieces.radiance, pieces.area)
-        _report_error(pieces, colors, remark)
+        if any(source == "height" for source, _, _ in getattr(surfaces[slot].varying, "inputs", ())):
+            remark("a Wireframe in its emission is drawn coarsely, and so is the total of its light")
+        else:
+            _report_error(pieces, colors, remark)
         parts.append(_of_pieces(part, pieces, len(made) + colors.color_of))
         made += [replace(surfaces[slot], emission=of_both_sides(color), varying=None) for color in colors.radiance]
     return _joined(parts), made

@@ -27,15 +27,16 @@ enum class ShaderSource : std::uint8_t {
     towards_viewer,    ///< 3: unit
     attribute,  ///< 4: the mesh attribute that the material binds to `index` as RGBA, and the mean of RGB; black if
                 ///< there is none
-    object_to_world,   ///< 12: the first three rows of the instance's matrix
-    world_to_object,   ///< 12
-    object_value,      ///< 1: number `index` of the instance; 0 if there is none
-    barycentric,       ///< 2: u and v of RayHit
-    backfacing,        ///< 1: 1 where the triangle's corners run clockwise, else 0
-    ray_length,        ///< 1: length of the ray; camera rays start at the near plane
-    transparent_depth  ///< 1: surfaces that the ray has passed through
+    object_to_world,    ///< 12: the first three rows of the instance's matrix
+    world_to_object,    ///< 12
+    object_value,       ///< 1: number `index` of the instance; 0 if there is none
+    barycentric,        ///< 2: u and v of RayHit
+    backfacing,         ///< 1: 1 where the triangle's corners run clockwise, else 0
+    ray_length,         ///< 1: length of the ray; camera rays start at the near plane
+    transparent_depth,  ///< 1: surfaces that the ray has passed through
+    height              ///< 3: of the triangle's corners above the edges opposite to them; 0 of what has none
 };
-inline constexpr int kShaderSources = 12;
+inline constexpr int kShaderSources = 13;
 /// Component of an attribute that is the mean of its RGB, or the value itself if it has one component.
 inline constexpr std::uint32_t kAttributeMean = 4;
 

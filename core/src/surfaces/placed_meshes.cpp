@@ -70,6 +70,15 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
     return result;
 }
 
+double PlacedMeshes::height(const RayHit& hit, std::size_t corner) const {
+    if (mesh_of(placements_[hit.instance]).shape->form != SurfaceForm::triangles) {
+        return 0;
+    }
+    const std::array<Vec3d, 3> at = corners(hit);
+    const Vec3d edge = at[(corner + 2) % 3] - at[(corner + 1) % 3];
+    return glm::length(glm::cross(glm::normalize(edge), at[corner] - at[(corner + 1) % 3]));
+}
+
 std::optional<std::array<Vec3d, 3>> PlacedMeshes::corner_normals(const RayHit& hit) const {
     const MeshShape& mesh = *mesh_of(placements_[hit.instance]).shape;
     if (mesh.vertex_normals.empty() && mesh.corner_normals.empty()) {
@@ -415,6 +424,8 @@ void PlacedMeshes::read(const ShaderInput& input, const Material& material, int 
             return fill([](const ShadedPlace& shaded, const auto&) { return shaded.ray_length; });
         case ShaderSource::transparent_depth:
             return fill([](const ShadedPlace& shaded, const auto&) { return shaded.transparent_depth; });
+        case ShaderSource::height:
+            return fill([&](const auto&, const SurfacePlace& at) { return height(at.hit, input.component); });
     }
 }
 

@@ -121,6 +121,8 @@ class PlacedMeshes {
     SurfacePoint round_surface(const RayHit& hit, const Vec3f& direction) const;
     /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
+    /// How far a corner of the hit triangle is from the edge opposite to it, in the world.
+    double height(const RayHit& hit, std::size_t corner) const;
     /// ∂P/∂u up to its length, of curves the way along them; 0 where u and v do not say.
     Vec3d growth_of_u(const RayHit& hit) const;
     Vec3d around_axis(const RayHit& hit, const Vec3d& position) const;

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from numbers import Integral
 
-from shlight.nodes.values import Color, Number, Step, Value, Vector, number, vector
+from shlight.nodes.values import Color, Number, Step, Value, Vector, minimum, number, select, vector
 
 # Numbers of ShaderSource in the core.
 SOURCES = {
@@ -21,6 +21,7 @@ SOURCES = {
     "backfacing": 9,
     "ray_length": 10,
     "transparent_depth": 11,
+    "height": 12,
 }
 
 
@@ -96,6 +97,13 @@ def ray_length() -> Value:
 def transparent_depth() -> Value:
     """How many surfaces the ray has passed through."""
     return read("transparent_depth")
+
+
+def edge_distance() -> Value:
+    """How far the nearest edge of the triangle is; very far where there are no triangles."""
+    at, heights = barycentric(), _vector("height")
+    nearest = minimum(minimum((1.0 - at.x - at.y) * heights.x, at.x * heights.y), at.y * heights.z)
+    return select(heights.x > 0.0, nearest, 1e30)
 
 
 def texture_place(place: Vector | None) -> Vector:
