@@ -28,7 +28,8 @@ struct ToonCone {
 /// Axes of a toon lobe, the third its own, in the xz-plane of the view.
 glm::dmat3 toon_frame(const ToonShape& shape, const Vec3d& wo);
 
-/// As boundary_integral(). Green's theorem makes it ∮ flux(θ) dφ, which is cut where the intensity has kinks.
+/// The same as boundary_integral() finds: by Green's theorem ∮ flux(θ) dφ, whose path is cut where the intensity has
+/// kinks.
 BoundaryIntegral toon_boundary_integral(const ToonShape& shape, double cos_theta_o, std::span<const Arc<double>> arcs,
                                         double tolerance);
 
