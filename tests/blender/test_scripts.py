@@ -14,7 +14,7 @@ import pytest
 from test_nodes_against_cycles import RAISED, SEEDS, SIDE, Case, picture, stage
 
 SOCKETS = {"float": "Float", "int": "Int", "color": "Color"}
-# What main() of each script does with numbers x, y and t, vectors a and b, and its output R.
+# Each body makes the output R of numbers x, y and t and of vectors a and b.
 BODIES = (
     "R = vector(sin(20*x), cos(20*y), tan(x));",
     "R = vector(asin(t), acos(x), atan(y));",
