@@ -163,8 +163,8 @@ class Computation(Registers):
             self.emit(name, self.own(to, i), *(self.as_float(argument, i) for argument in arguments))
 
     def special_power(self, to: Symbol, base: Symbol, exponent: Symbol) -> list[Any] | None:
-        """The function, and its arguments, that Cycles takes for a power of a constant exponent: [] for most, None where
-        it was listed."""
+        """The function and its arguments that Cycles takes for a power with constants: [] for most, None where it was
+        listed."""
         if _all(exponent, 0.0) or _all(base, 0.0):
             self.set_known(to, [1.0 if _all(exponent, 0.0) else 0.0])
             return None
