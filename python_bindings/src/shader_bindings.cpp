@@ -13,6 +13,7 @@
 
 #include "arguments.h"
 #include "bindings.h"
+#include "chunks.h"
 #include "shaders/image_texture.h"
 #include "shaders/operations.h"
 #include "shaders/script_kernel.h"
@@ -88,8 +89,9 @@ class ArrayReader : public ShaderReader {
   public:
     using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 
-    explicit ArrayReader(const std::vector<std::pair<Key, AnyArray<float>>>& inputs, std::size_t count)
-        : inputs_(&inputs), count_(count) {}
+    /// The program's first lane is lane `begin` of the arrays, which have `count`. Places near by are the neighbours.
+    ArrayReader(const std::vector<std::pair<Key, AnyArray<float>>>& inputs, std::size_t count, std::size_t begin)
+        : inputs_(&inputs), count_(count), begin_(begin) {}
 
     void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
         const Key key = {static_cast<std::uint32_t>(input.source), input.index, input.component};
@@ -97,15 +99,14 @@ class ArrayReader : public ShaderReader {
             std::find_if(inputs_->begin(), inputs_->end(), [&](const auto& own) { return own.first == key; });
         const float* from = found == inputs_->end() ? nullptr : found->second.data();
         for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = from == nullptr
-                         ? 0.0F
-                         : from[static_cast<std::size_t>(place < 3 ? place : place - 2) * count_ + first + i];
+            const auto row = static_cast<std::size_t>(place < 3 ? place : place - 2);
+            out[i] = from == nullptr ? 0.0F : from[row * count_ + begin_ + first + i];
         }
     }
 
   private:
     const std::vector<std::pair<Key, AnyArray<float>>>* inputs_;
-    std::size_t count_;
+    std::size_t count_, begin_;
 };
 
 Array<float> evaluate(const ShaderProgram& program,
@@ -117,9 +118,17 @@ Array<float> evaluate(const ShaderProgram& program,
     }
     Array<float> out({static_cast<py::ssize_t>(program.result_count()), static_cast<py::ssize_t>(count)});
     const std::span<float> results(out.mutable_data(), static_cast<std::size_t>(out.size()));
-    ShaderProgram::Registers registers;
     const py::gil_scoped_release release;
-    program.evaluate(ArrayReader(inputs, count), count, true, registers, results);
+    const std::size_t chunk = chunk_of(count);
+    parallel_for((count + chunk - 1) / chunk, 0, [&](std::size_t number) {
+        const std::size_t begin = number * chunk, lanes = std::min(chunk, count - begin);
+        ShaderProgram::Registers registers;
+        std::vector<float> own(program.result_count() * lanes);
+        program.evaluate(ArrayReader(inputs, count, begin), lanes, true, registers, own);
+        for (std::size_t r = 0; r < program.result_count(); ++r) {
+            std::copy_n(own.data() + r * lanes, lanes, results.data() + r * count + begin);
+        }
+    });
     return out;
 }
 

@@ -32,7 +32,7 @@ def script(*code: str) -> str:
 
 
 def value(output: Any) -> list[float]:
-    """What an output is without a scene, where all inputs of the surface are 0."""
+    """The numbers of an output without a scene, where all inputs of the surface are 0."""
     builder = ProgramBuilder()
     builder.result([output] if isinstance(output, nodes.Value) else list(output))
     return [float(row[0]) for row in builder.program().evaluate([], 1)]

@@ -75,6 +75,11 @@ class VaryingColor:
     def _steps(self) -> list[Step]:
         return list(in_order(value.step for value in self.color))
 
+    @property
+    def runs_scripts(self) -> bool:
+        """Whether a script is run at each place, which may take long."""
+        return any(step.name == "script" for step in self._steps)
+
     @cached_property
     def _places(self) -> list[tuple[tuple[Value, Value], tuple[float, float]]]:
         """The coordinates at which pictures are looked up, and the pictures' sizes."""

@@ -35,6 +35,7 @@ FINER_LEVELS = 3
 # Quarterings to the samples; samples, and parts whose means are kept, of all triangles together.
 LEAST_SAMPLING_LEVELS = 8
 MOST_SAMPLING_LEVELS = 11
+SCRIPT_SAMPLING_LEVELS = 6  # at most, where a script is run for each sample
 MOST_SAMPLES = 1 << 20
 MOST_PARTS = 1 << 18
 SAMPLES_AT_ONCE = 1 << 18
@@ -260,6 +261,8 @@ def _cut_surface(
     levels = np.zeros(len(corners), dtype=np.int64)
     for places in texels or [np.zeros((len(corners), 3, 2))]:
         levels[differs] = np.maximum(levels[differs], sampling_levels(places[differs]))
+    if emission.runs_scripts:
+        levels = np.minimum(levels, SCRIPT_SAMPLING_LEVELS)
 
     def radiance(places: Array) -> Array:
         return emission.of_sides({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))

@@ -25,7 +25,7 @@ namespace shlight::HWY_NAMESPACE::script {
 
 inline constexpr float kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
 inline constexpr float kPi = 3.14159265358979323846F;
-/// As C has it for x86: what no integer holds is the least one.
+/// The integer towards 0, as x86 has it: the least one where no integer holds the number.
 inline std::int32_t integer(float x) {
     return x >= -0x1p31F && x < 0x1p31F ? static_cast<std::int32_t>(x) : std::numeric_limits<std::int32_t>::min();
 }
@@ -38,7 +38,7 @@ inline float between(float x, float low, float high) {
     return x > high ? high : x;
 }
 
-/// What of a number is smaller than the rounding of `at` is 0.
+/// The number as `at` rounds it, so that tiny ones are 0.
 inline float without_tiny(float x, float at = 1) {
     return at - (at - x);
 }
@@ -221,7 +221,7 @@ inline float cube_root(float x) {
         return x;
     }
     constexpr float kThird = 0.333333333F;
-    float a = std::bit_cast<float>(0x2A5137A0 + std::bit_cast<std::int32_t>(size) / 3);
+    auto a = std::bit_cast<float>(0x2A5137A0 + std::bit_cast<std::int32_t>(size) / 3);
     a = kThird * (2 * a + size / (a * a));
     a = kThird * (2 * a + size / (a * a));
     return std::copysign(a, x);

@@ -14,8 +14,8 @@ from shlight.nodes.script_registers import Registers
 # Functions by component, which have the same name in the core.
 FUNCTIONS = (
     "floor", "ceil", "round", "trunc", "sign", "step", "smoothstep", "sqrt", "inversesqrt", "cbrt", "pow", "exp",
-    "exp2", "expm1", "log", "log2", "log10", "logb", "erf", "erfc", "sin", "cos", "tan", "asin", "acos", "atan", "atan2",
-    "sinh", "cosh", "tanh", "isnan", "isinf", "isfinite",
+    "exp2", "expm1", "log", "log2", "log10", "logb", "erf", "erfc", "sin", "cos", "tan", "asin", "acos", "atan",
+    "atan2", "sinh", "cosh", "tanh", "isnan", "isinf", "isfinite",
 )  # fmt: skip
 INTEGER_ONLY = ("bitand", "bitor", "xor", "compl", "shl", "shr", "and", "or")
 # Comparisons: the core's, whether the operands change places, and whether it is negated.
@@ -112,7 +112,7 @@ class Computation(Registers):
             self.emit(name, self.own(to, i), self.as_float(a, i), self.as_float(b, i))
 
     def simplified(self, name: str, to: Symbol, a: Symbol, b: Symbol) -> bool:
-        """What Cycles makes of constants 0 and 1, and of two constants."""
+        """Whether constants make it an assignment, as Cycles finds, which is then listed."""
         same = {
             "add": a if _all(b, 0.0) else b if _all(a, 0.0) else None,
             "sub": a if _all(b, 0.0) else None,
@@ -163,7 +163,8 @@ class Computation(Registers):
             self.emit(name, self.own(to, i), *(self.as_float(argument, i) for argument in arguments))
 
     def special_power(self, to: Symbol, base: Symbol, exponent: Symbol) -> list[Any] | None:
-        """What Cycles makes of powers with a constant; None where that is done, [] where there is nothing special."""
+        """The function and its arguments that Cycles takes for a power with constants: [] for most, None where it was
+        listed."""
         if _all(exponent, 0.0) or _all(base, 0.0):
             self.set_known(to, [1.0 if _all(exponent, 0.0) else 0.0])
             return None
@@ -251,7 +252,7 @@ class Computation(Registers):
             self.emit("store", first, place, self.as_int(source, i) if to.is_int else self.as_float(source, i), length)
 
     def places(self, array: Symbol, index: Symbol) -> list[tuple[int, int, int]]:
-        """Of each component of an element: the first register, the register of the index, and the length."""
+        """The first register of each component of an element, the register of the index, and the length."""
         place = self.as_int(index)
         if array.length is None:
             return [(self.own(array), place, 3)]
