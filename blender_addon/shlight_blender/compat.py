@@ -280,6 +280,14 @@ DISPLACED_KEEP_CORNERS = VERSION >= (5, 1, 0)
 # the one of the vertices at first.
 BENDS_OLD_NORMAL = VERSION >= (5, 0, 0)
 BENDS_VERTEX_NORMAL = (5, 0, 0) <= VERSION < (5, 1, 0)
+# The distance, in pixels, over which the bump of a displacement compares heights.
+DISPLACEMENT_FILTER_WIDTH = 0.1 if VERSION >= (4, 4, 0) else 1.0
+
+
+def filter_width(bump: Any) -> float:
+    """The same of a Bump node, whose input for it older versions lack."""
+    given = bump.inputs.get("Filter Width")
+    return 1.0 if given is None else min(max(given.default_value, 1e-3), 1e3)
 
 
 def splits_vertices(mesh: Any) -> str:

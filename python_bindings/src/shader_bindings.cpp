@@ -55,6 +55,7 @@ ShaderStep step_from(const StepTuple& tuple) {
         step.input = {static_cast<ShaderSource>(number), parameter, arguments[0]};
     } else {
         step.kind = ShaderStep::Kind::operation;
+        step.constant = static_cast<float>(constant);
         step.operation = number;
         step.parameter = parameter;
         step.arguments = arguments;
@@ -98,7 +99,9 @@ class ArrayReader : public ShaderReader {
             std::find_if(inputs_->begin(), inputs_->end(), [&](const auto& own) { return own.first == key; });
         const float* from = found == inputs_->end() ? nullptr : found->second.data();
         for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = from == nullptr ? 0.0F : from[static_cast<std::size_t>(place) * count_ + begin_ + first + i];
+            out[i] = from == nullptr
+                         ? 0.0F
+                         : from[static_cast<std::size_t>(place < 3 ? place : place - 2) * count_ + begin_ + first + i];
         }
     }
 

@@ -21,7 +21,13 @@ from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_wor
 from shlight.nodes.rays import Ray, on_ray, with_vectors
 from shlight.nodes.values import Value, cross, dot, normalize
 
-from ..compat import BENDS_OLD_NORMAL, BENDS_VERTEX_NORMAL, DISPLACED_KEEP_CORNERS, displacement_method
+from ..compat import (
+    BENDS_OLD_NORMAL,
+    BENDS_VERTEX_NORMAL,
+    DISPLACED_KEEP_CORNERS,
+    DISPLACEMENT_FILTER_WIDTH,
+    displacement_method,
+)
 from .corner_values import at_corners
 from .emission import VaryingColor
 from .mesh_arrays import MeshArrays, Undisplaced, face_normals, unit
@@ -99,15 +105,17 @@ def _bent(shader: Shader, socket: Any, offset: Vector, reader: TreeReader, *, as
         height, scale = _height(inputs), dot(_along(inputs), nodes.normal())
     if height.constant is not None:
         return shader
+    width = DISPLACEMENT_FILTER_WIDTH
     if not as_undisplaced:
-        return shader.with_normal(nodes.bump(height, distance=scale))
+        return shader.with_normal(nodes.bump(height, distance=scale, filter_width=width))
     place = Vector(*nodes.attribute(UNDISPLACED))
     n = normalize(normal_to_object(nodes.normal()))
     if BENDS_OLD_NORMAL:
         n = normalize(Vector(*nodes.attribute(UNDISPLACED_NORMAL))) * (1.0 - 2.0 * nodes.backfacing())
     known = {"position": point_to_world(place), "normal": normalize(normal_to_world(n))}
     height, scale = with_vectors((height, scale), known)
-    return shader.with_normal(normalize(normal_to_world(nodes.bump(height, distance=scale, at=n, place=place))))
+    bent = nodes.bump(height, distance=scale, at=n, place=place, filter_width=width)
+    return shader.with_normal(normalize(normal_to_world(bent)))
 
 
 def displace(

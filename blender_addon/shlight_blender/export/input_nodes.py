@@ -14,6 +14,7 @@ from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_obj
 from shlight.nodes.mathematics import reflect
 from shlight.nodes.values import clamp, cross, dot, length, maximum, normalize, number, operation, select, sqrt
 
+from ..compat import filter_width
 from ..names import name_of
 from .camera import View
 from .mesh_attributes import (
@@ -294,7 +295,9 @@ def _bump(inputs: NodeInputs) -> Vector:
     height, strength, distance = (inputs.number(name) for name in ("Height", "Strength", "Distance"))
     if not inputs.is_linked("Height"):
         return nodes.normal() if at is None else at
-    return nodes.bump(height, strength, distance, at=at, invert=inputs.node.invert)
+    return nodes.bump(
+        height, strength, distance, at=at, invert=inputs.node.invert, filter_width=filter_width(inputs.node)
+    )
 
 
 def _bevel(inputs: NodeInputs) -> Vector:

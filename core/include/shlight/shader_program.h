@@ -3,9 +3,9 @@
 // Shader programs: numbers that vary over a surface, computed by a list of float operations for many hits at once.
 //
 // A program is straight-line code. Each step reads values of earlier steps and makes one or more values; vectors and
-// colours are three values. A value may be needed at three places: at the hit, and where the camera rays of the pixels
-// to the right and below would meet the plane of the surface. Their differences filter textures and give bump maps
-// their slope. Only values of which a difference is taken are computed three times.
+// colours are three values. A value may be needed at other places than the hit: where camera rays to the right and
+// below would meet the plane of the surface, which filters textures, and at two places near the hit in that plane, at
+// right angles, which give bump maps their slope. Only values of which such a difference is taken are computed there.
 // A step may run a script, which has loops.
 #pragma once
 
@@ -80,7 +80,7 @@ struct ShaderScript {
 
 struct ShaderStep {
     enum class Kind : std::uint8_t { constant, input, operation } kind;
-    float constant = 0;
+    float constant = 0;  ///< or, of a difference that gives a slope, the distance it is taken over, in pixels
     ShaderInput input{};
     std::uint32_t operation = 0, parameter = 0;
     std::vector<std::uint32_t> arguments;  ///< values of earlier steps
@@ -93,7 +93,8 @@ class ShaderReader {
     ShaderReader(const ShaderReader&) = delete;
     ShaderReader& operator=(const ShaderReader&) = delete;
     virtual ~ShaderReader() = default;
-    /// Reads lanes first … first + out.size() - 1. place: 0 at the hit, 1 at the right neighbour, 2 at the lower one.
+    /// Reads lanes first … first + out.size() - 1. place: 0 at the hit, 1 at the right neighbour, 2 at the lower one, 3
+    /// and 4 near by.
     virtual void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const = 0;
 };
 
@@ -108,20 +109,25 @@ class ShaderProgram {
     std::size_t result_count() const { return results_.size(); }
     /// Number of operations per hit.
     std::size_t operation_count() const { return operations_; }
-    /// Whether it takes differences between neighbours.
+    /// Whether it takes differences between neighbours, or between places near by.
     bool takes_differences() const { return takes_differences_; }
+    /// How far those places are from the hit, in pixels: the least of its slopes' distances; 0: it has none.
+    float slope_width() const { return slope_width_; }
 
     /// Working memory of evaluate(), which callers reuse.
     using Registers = std::vector<float>;
-    /// Writes results[r · count + lane]. neighbours: whether neighbours exist; otherwise all differences are 0.
-    void evaluate(const ShaderReader& reader, std::size_t count, bool neighbours, Registers& registers,
+    /// Writes results[r · count + lane]. differs: whether other places are known; otherwise all differences are 0.
+    void evaluate(const ShaderReader& reader, std::size_t count, bool differs, Registers& registers,
                   std::span<float> results) const;
 
   private:
     struct Value {
         std::uint32_t slot = 0;
-        bool everywhere = false;  // computed at all three places
+        bool beside = false, near = false;  // computed at neighbours, and near the hit
+
+        bool at(int place) const { return place == 0 || (place < kFirstNear ? beside : near); }
     };
+    static constexpr int kFirstNear = 3;
 
     void check(const std::vector<std::uint32_t>& results);
     void check_operation(const ShaderStep& step, std::uint32_t values) const;
@@ -130,7 +136,7 @@ class ShaderProgram {
     void find_places();
     void assign_slots(const std::vector<std::uint32_t>& results);
     void run(const ShaderStep& step, std::uint32_t first_value, const ShaderReader& reader, std::size_t first,
-             std::size_t count, bool neighbours, float* registers) const;
+             std::size_t count, bool differs, float* registers) const;
 
     std::vector<ShaderStep> steps_;
     std::vector<ShaderTable> tables_;
@@ -141,6 +147,7 @@ class ShaderProgram {
     std::vector<std::uint32_t> results_;
     std::size_t slots_ = 0, operations_ = 0;
     bool takes_differences_ = false;
+    float slope_width_ = 0;
 };
 
 }  // namespace shlight

@@ -91,6 +91,15 @@ bool takes_differences(const Material& material) {
     return material.shader != nullptr && material.shader->program.takes_differences();
 }
 
+/// step: of the neighbours, in pixels.
+NeighbourRays beside(const Ray& ray, const Ray& right, const Ray& below, double step) {
+    const auto way = [](const Ray& own) { return glm::normalize(Vec3d(own.direction)); };
+    const auto mean = [&](const auto& value) {
+        return (glm::distance(value(right), value(ray)) + glm::distance(value(below), value(ray))) / (2 * step);
+    };
+    return {right, below, mean([](const Ray& own) { return Vec3d(own.origin); }), mean(way)};
+}
+
 }  // namespace
 
 Vec3d PixelSums::variance() const {
@@ -259,7 +268,7 @@ void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::ui
     if (picture_->takes_differences) {
         const Ray right = picture_->ray(place.x + step, place.y, lens);
         const Ray below = picture_->ray(place.x, place.y + step, lens);
-        neighbours_.push_back({right.empty() ? ray : right, below.empty() ? ray : below});
+        neighbours_.push_back(beside(ray, right.empty() ? ray : right, below.empty() ? ray : below, step));
     }
 }
 

@@ -130,11 +130,11 @@ constexpr Operation elementwise(std::string_view name) {
     return {{name, kArguments, 1, Parameter::none}, &each<kFunction, kArguments>};
 }
 
-constexpr std::string_view kRight = "right", kBelow = "below";
-
 constexpr std::array kOperations = {
-    Operation{{kRight, 1, 1, Parameter::none}, nullptr},
-    Operation{{kBelow, 1, 1, Parameter::none}, nullptr},
+    Operation{{"right", 1, 1, Parameter::none}, nullptr},
+    Operation{{"below", 1, 1, Parameter::none}, nullptr},
+    Operation{{"near_x", 1, 1, Parameter::none}, nullptr},
+    Operation{{"near_y", 1, 1, Parameter::none}, nullptr},
     elementwise<2, [](float a, float b) { return a + b; }>("add"),
     elementwise<2, [](float a, float b) { return a - b; }>("subtract"),
     elementwise<2, [](float a, float b) { return a * b; }>("multiply"),
@@ -206,13 +206,6 @@ std::span<const OperationLoop> operation_loops() {
         return list;
     }();
     return all;
-}
-
-std::size_t difference_right() {
-    return 0;
-}
-std::size_t difference_below() {
-    return 1;
 }
 
 }  // namespace shlight

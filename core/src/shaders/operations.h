@@ -27,8 +27,7 @@ struct OperationLanes {
 using OperationLoop = void (*)(const OperationLanes& lanes);
 std::span<const OperationLoop> operation_loops();
 
-/// Numbers of the operations that take differences, which have no loop.
-std::size_t difference_right();
-std::size_t difference_below();
+/// The first operations take differences, and have no loop: between place i + 1 of ShaderReader and the hit.
+inline constexpr std::uint32_t kDifferences = 4;
 
 }  // namespace shlight

@@ -21,16 +21,16 @@ using Parameter = ShaderOperation::Parameter;
 /// Number of lanes evaluated at a time; the values of a long program then stay in the cache.
 constexpr std::size_t kLanes = 128;
 static_assert(kLanes % 16 == 0);
-constexpr int kPlaces = 3;
+constexpr int kPlaces = 5;
 constexpr std::size_t kMostArguments = 128, kMostResults = 32;
 
 const ShaderOperation& operation_of(const ShaderStep& step) {
     return shader_operations()[step.operation];
 }
 
-bool is_difference(const ShaderStep& step) {
-    return step.kind == Kind::operation &&
-           (step.operation == difference_right() || step.operation == difference_below());
+/// The place whose difference to the hit a step takes; 0: it is another step.
+int other_place(const ShaderStep& step) {
+    return step.kind == Kind::operation && step.operation < kDifferences ? static_cast<int>(step.operation) + 1 : 0;
 }
 
 void check_table(const ShaderTable& table) {
@@ -127,24 +127,26 @@ std::size_t ShaderProgram::result_count(const ShaderStep& step) const {
     return operation.parameter == Parameter::script ? scripts_[step.parameter].results.size() : operation.result_count;
 }
 
-/// Marks the values that are needed at neighbouring hits, because a difference of a dependent value is taken.
+/// Marks the values that are needed at other places, because a difference of a dependent value is taken.
 void ShaderProgram::find_places() {
     for (std::size_t s = steps_.size(); s-- > 0;) {
         const ShaderStep& step = steps_[s];
         const auto outputs = std::span(values_).subspan(first_value_[s], result_count(step));
-        bool everywhere =
-            std::any_of(outputs.begin(), outputs.end(), [](const Value& value) { return value.everywhere; });
-        if (is_difference(step)) {
-            takes_differences_ = true;
-            values_[step.arguments[0]].everywhere = true;
-            everywhere = false;
-        }
-        everywhere = everywhere && step.kind != Kind::constant;
+        const int other = other_place(step);
+        const bool one_place = other > 0 || step.kind == Kind::constant;
+        const bool beside = !one_place && std::ranges::any_of(outputs, &Value::beside);
+        const bool near = !one_place && std::ranges::any_of(outputs, &Value::near);
         for (Value& value : outputs) {
-            value.everywhere = everywhere;
+            value.beside = beside;
+            value.near = near;
         }
         for (const std::uint32_t argument : step.arguments) {
-            values_[argument].everywhere = values_[argument].everywhere || everywhere;
+            values_[argument].beside |= beside || (0 < other && other < kFirstNear);
+            values_[argument].near |= near || other >= kFirstNear;
+        }
+        takes_differences_ |= other > 0;
+        if (other >= kFirstNear) {
+            slope_width_ = slope_width_ > 0 ? std::min(slope_width_, step.constant) : step.constant;
         }
     }
 }
@@ -182,13 +184,13 @@ void ShaderProgram::assign_slots(const std::vector<std::uint32_t>& results) {
     }
 }
 
-void ShaderProgram::evaluate(const ShaderReader& reader, std::size_t count, bool neighbours, Registers& registers,
+void ShaderProgram::evaluate(const ShaderReader& reader, std::size_t count, bool differs, Registers& registers,
                              std::span<float> results) const {
     registers.resize(slots_ * kPlaces * kLanes);
     for (std::size_t first = 0; first < count; first += kLanes) {
         const std::size_t lanes = std::min(kLanes, count - first);
         for (std::size_t s = 0; s < steps_.size(); ++s) {
-            run(steps_[s], first_value_[s], reader, first, lanes, neighbours, registers.data());
+            run(steps_[s], first_value_[s], reader, first, lanes, differs, registers.data());
         }
         for (std::size_t r = 0; r < results_.size(); ++r) {
             const float* from = registers.data() + values_[results_[r]].slot * kPlaces * kLanes;
@@ -198,22 +200,23 @@ void ShaderProgram::evaluate(const ShaderReader& reader, std::size_t count, bool
 }
 
 void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const ShaderReader& reader,
-                        std::size_t first, std::size_t count, bool neighbours, float* registers) const {
+                        std::size_t first, std::size_t count, bool differs, float* registers) const {
     // Values that are computed at one place only are the same at the others.
     const auto at = [&](std::uint32_t value, int place) {
         const std::size_t row =
-            values_[value].slot * kPlaces + (values_[value].everywhere ? static_cast<std::size_t>(place) : 0);
+            values_[value].slot * kPlaces + (values_[value].at(place) ? static_cast<std::size_t>(place) : 0);
         return registers + row * kLanes;
     };
-    if (is_difference(step)) {
-        const int place = step.operation == difference_right() ? 1 : 2;
+    if (const int other = other_place(step)) {
         const float* here = at(step.arguments[0], 0);
-        const float* there = at(step.arguments[0], neighbours ? place : 0);
+        const float* there = at(step.arguments[0], differs ? other : 0);
         std::transform(there, there + count, here, at(first_value, 0), std::minus<>());
         return;
     }
-    const int places = values_[first_value].everywhere && neighbours ? kPlaces : 1;
-    for (int place = 0; place < places; ++place) {
+    for (int place = 0; place < (differs ? kPlaces : 1); ++place) {
+        if (!values_[first_value].at(place)) {
+            continue;
+        }
         if (step.kind == Kind::constant) {
             std::fill_n(at(first_value, place), count, step.constant);
         } else if (step.kind == Kind::input) {

@@ -28,7 +28,7 @@ inline constexpr std::size_t kSquare = 16 / sizeof(Scalar<D>);
 
 /// Start of each lane's row. Lanes beyond the last light repeat it and write the same numbers to the same place.
 template <class T>
-using RowPointers = std::array<T*, kLaneCount<Lanes<T>>>;
+using RowPointers = std::array<T*, kLaneCount<Lanes<std::remove_const_t<T>>>>;
 
 /// In: v[j] is column j of all lanes. Out: v[j] holds row j of each 128-bit block; block b is lane b · kSquare + j.
 template <class D>

@@ -116,14 +116,26 @@ void CameraSurfaces::meet(const Sink& sink) {
     parts_.clear();
 }
 
-ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays* neighbours) const {
-    ShadedPlace place(surface.point, surface.hit, surface.towards_viewer, surface.ray_length(), surface.depth);
-    if (neighbours != nullptr) {
-        const Vec3d& normal = surface.point.geometric_normal;
-        place.at[1] = scene_->placed().neighbour(place.at[0], normal, surface.distance, neighbours->right);
-        place.at[2] = scene_->placed().neighbour(place.at[0], normal, surface.distance, neighbours->below);
+ShadedPlace CameraSurfaces::place_of(const Surface& surface) const {
+    return {surface.point, surface.hit, surface.towards_viewer, surface.ray_length(), surface.depth};
+}
+
+/// Neighbours of other rays than the camera's are unknown; places near by, and the directions to them, are Cycles'.
+void CameraSurfaces::set_beside(ShadedPlace& place, const Surface& surface, const NeighbourRays& neighbours,
+                                double slope_width) const {
+    const PlacedMeshes& placed = scene_->placed();
+    const Vec3d& normal = surface.point.geometric_normal;
+    if (surface.source == RaySource::camera) {
+        place.at[1] = placed.neighbour(place.at[0], normal, surface.distance, neighbours.right);
+        place.at[2] = placed.neighbour(place.at[0], normal, surface.distance, neighbours.below);
     }
-    return place;
+    if (slope_width > 0) {
+        const double pixel = neighbours.width + neighbours.spread * (surface.travelled + surface.distance);
+        const Vec3d diagonal(normal.x == normal.y && normal.x == normal.z ? -1 : 1, 1, 1);
+        const Vec3d x = glm::normalize(glm::cross(diagonal, normal));
+        place.at[3] = placed.beside(place.at[0], slope_width * pixel * x);
+        place.at[4] = placed.beside(place.at[0], slope_width * pixel * glm::cross(normal, x));
+    }
 }
 
 void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
@@ -186,17 +198,17 @@ void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std
 void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces) {
     const Material& material = scene_->materials()[surfaces_[surfaces.front()].point.material];
     const ShaderProgram& program = material.shader->program;
+    const bool differs = !neighbours.empty() && program.takes_differences();
     places_.clear();
     for (const std::uint32_t i : surfaces) {
-        // Neighbours of other rays than the camera's are unknown.
-        const bool differs =
-            !neighbours.empty() && program.takes_differences() && surfaces_[i].source == RaySource::camera;
-        places_.push_back(place_of(surfaces_[i], differs ? &neighbours[surfaces_[i].ray] : nullptr));
+        places_.push_back(place_of(surfaces_[i]));
+        if (differs) {
+            set_beside(places_.back(), surfaces_[i], neighbours[surfaces_[i].ray], double{program.slope_width()});
+        }
     }
     const std::size_t begin = results_.size();
     results_.resize(begin + program.result_count() * surfaces.size());
-    scene_->placed().run(program, material, places_, program.takes_differences(), registers_,
-                         std::span(results_).subspan(begin));
+    scene_->placed().run(program, material, places_, differs, registers_, std::span(results_).subspan(begin));
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         surfaces_[surfaces[k]].results = begin + k;
         surfaces_[surfaces[k]].stride = surfaces.size();

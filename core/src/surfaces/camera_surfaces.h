@@ -55,6 +55,7 @@ struct PathSettings {
 /// Camera rays beside another, as far away as its share of the pixel is wide.
 struct NeighbourRays {
     Ray right, below;
+    double width, spread;  ///< a pixel's width [m] where the ray begins, and what it grows by along the ray [1]
 };
 
 /// Light of a camera ray that is met along its path: emission of surfaces, lamps, and the background, also in mirrors.
@@ -116,6 +117,7 @@ class CameraSurfaces {
         std::optional<std::uint32_t> light_set{};     ///< of the surface that has reflected it; see MeshUse
         /// [1/m] of the bodies that it runs in, as far as they are known, and of those behind its end.
         Rgb absorption{0}, absorption_beyond{0};
+        double travelled = 0;  ///< from the camera to where `whole` begins [m]
 
         bool sees_lights() const { return source != RaySource::scattered && source != RaySource::held_out; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -169,6 +171,11 @@ class CameraSurfaces {
 
         /// Distance from where the whole ray begins, at its t_min.
         double ray_length() const { return distance - whole.t_min; }
+        Segment next(RaySource origin, PathKind by, bool through, const Rgb& share, const Ray& way) const {
+            Segment on = Segment::next(origin, by, through, share, way);
+            on.travelled = travelled + distance;
+            return on;
+        }
     };
 
     // Results of the last call:
@@ -236,8 +243,10 @@ class CameraSurfaces {
                           const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
-    /// neighbours: null where the program takes no differences.
-    ShadedPlace place_of(const Surface& surface, const NeighbourRays* neighbours) const;
+    ShadedPlace place_of(const Surface& surface) const;
+    /// Sets the other places of a program that takes differences.
+    void set_beside(ShadedPlace& place, const Surface& surface, const NeighbourRays& neighbours,
+                    double slope_width) const;
     void add_emission(const Surface& surface, const Sink& sink);
     void pass_on(std::size_t first, const Sink& sink);
     bool is_shaded(const Segment& segment) const {

@@ -178,15 +178,19 @@ SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& nor
     // A ray that meets the plane far away, or behind itself, is taken to meet it not so far.
     const double most = 2 * length;
     const double t = away * approach > 0 && away / approach < most ? away / approach : most;
-    const Vec3d position = origin + t * direction;
-    SurfacePlace result = {place.hit, position, -direction};
+    SurfacePlace result = beside(place, origin + t * direction - place.position);
+    result.towards_viewer = -direction;
+    return result;
+}
+
+SurfacePlace PlacedMeshes::beside(const SurfacePlace& place, const Vec3d& step) const {
+    SurfacePlace result = {place.hit, place.position + step, place.towards_viewer};
     if (mesh_of(placements_[place.hit.instance]).shape->form != SurfaceForm::triangles) {
         return result;
     }
     const std::array<Vec3d, 3> corners = this->corners(place.hit);
     const Vec3d u = corners[1] - corners[0];
     const Vec3d v = corners[2] - corners[0];
-    const Vec3d step = position - place.position;
     const double uu = glm::dot(u, u);
     const double uv = glm::dot(u, v);
     const double vv = glm::dot(v, v);
@@ -358,8 +362,8 @@ class PlacedMeshes::PlaceReader : public ShaderReader {
 };
 
 void PlacedMeshes::run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places,
-                       bool neighbours, ShaderProgram::Registers& registers, std::span<float> results) const {
-    program.evaluate(PlaceReader(*this, material, places), places.size(), neighbours, registers, results);
+                       bool differs, ShaderProgram::Registers& registers, std::span<float> results) const {
+    program.evaluate(PlaceReader(*this, material, places), places.size(), differs, registers, results);
 }
 
 void PlacedMeshes::read(const ShaderInput& input, const Material& material, int place,

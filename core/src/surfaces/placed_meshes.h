@@ -32,9 +32,9 @@ struct SurfacePlace {
     Vec3d towards_viewer;  ///< unit
 };
 
-/// The same, and the surface's neighbours in the picture (see shader_program.h).
+/// The same, and other places of the surface (see shader_program.h).
 struct ShadedPlace {
-    /// Its neighbours are in the same place.
+    /// The others are in the same place.
     ShadedPlace(const SurfacePoint& point, const RayHit& hit, const Vec3d& towards_viewer, double length,
                 std::uint32_t depth)
         : shading_normal(point.shading_normal),
@@ -44,7 +44,7 @@ struct ShadedPlace {
         at.fill({hit, point.position, towards_viewer});
     }
 
-    std::array<SurfacePlace, 3> at;          ///< the hit, to the right, below
+    std::array<SurfacePlace, 5> at;          ///< the hit, to the right, below, and two near by
     Vec3d shading_normal, geometric_normal;  ///< at the hit
     double ray_length;
     std::uint32_t transparent_depth;
@@ -103,9 +103,11 @@ class PlacedMeshes {
     /// The place where another ray meets the plane of a surface, which may lie outside its triangle. The ray is taken
     /// to be at most twice as long as the hit's. Precondition: as of surface().
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
+    /// The place at the end of a step in the plane of a surface, which may lie outside its triangle.
+    SurfacePlace beside(const SurfacePlace& place, const Vec3d& step) const;
     /// Evaluates a material's program, see ShaderProgram::evaluate().
-    void run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places,
-             bool neighbours, ShaderProgram::Registers& registers, std::span<float> results) const;
+    void run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places, bool differs,
+             ShaderProgram::Registers& registers, std::span<float> results) const;
 
   private:
     class PlaceReader;

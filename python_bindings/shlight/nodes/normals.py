@@ -19,7 +19,6 @@ from shlight.nodes.values import (
     Value,
     Varying,
     Vector,
-    below,
     clamp,
     cross,
     dot,
@@ -28,7 +27,7 @@ from shlight.nodes.values import (
     maximum,
     normalize,
     number,
-    right,
+    operation,
     select,
     vector,
 )
@@ -77,20 +76,25 @@ def bump(
     at: Vector | None = None,
     place: Vector | None = None,
     invert: bool = False,
+    filter_width: float = 0.1,
 ) -> Vector:
     """The normal of a surface that is raised by height times distance [m]; strength mixes it with the one before.
 
     at, place: the normal before, and where the hit is, in the frame of the normal that is returned; None: the smooth
         normal and the position in the world.
+    filter_width: the distance over which heights are compared, in pixels; of a material's bumps the least counts.
     """
+    width = number(filter_width, "filter_width", 1e-3, 1e3).constant
+    if width is None:
+        raise ValueError("filter_width must be a number, got an expression")
     before = normal() if at is None else at
     here = position() if place is None else place
-    dx = Vector(*(right(component) for component in here))
-    dy = Vector(*(below(component) for component in here))
+    dx = Vector(*(operation("near_x", component, data=width) for component in here))
+    dy = Vector(*(operation("near_y", component, data=width) for component in here))
     rx, ry = cross(dy, before), cross(before, dx)
     determinant = dot(dx, rx)
-    h = number(height)
-    slope = rx * right(h) + ry * below(h)
+    (h,) = on_ray([number(height)], None, filtered=False)
+    slope = rx * operation("near_x", h, data=width) + ry * operation("near_y", h, data=width)
     scale = -number(distance) if invert else number(distance)
     s: Value = maximum(strength, 0.0)
     raised = normalize(before * abs(determinant) - slope * (scale * sign(determinant)))

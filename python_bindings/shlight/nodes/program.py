@@ -83,6 +83,8 @@ class ProgramBuilder:
             source, index, component = step.data
             return (INPUT, 0.0, *self.input_number(source, index), [component]), 1
         number = operations()[step.name][0]
+        if isinstance(step.data, float):  # over which a slope's difference is taken
+            return (OPERATION, step.data, number, 0, arguments), result_count(step)
         return (OPERATION, 0.0, number, self._resource(step.data), arguments), result_count(step)
 
     def _resource(self, data: Any) -> int:

@@ -268,8 +268,9 @@ def operation(name: str, *arguments: Number, data: Any = None) -> Value:
     return steps(name, *arguments, data=data)[0]
 
 
-# Operations that images and bump maps use: the differences of a value to the neighbouring camera rays.
-DIFFERENCES = ("right", "below")
+# Operations that images and bump maps use: the differences of a value to the neighbouring camera rays, and to places
+# near the hit.
+DIFFERENCES = ("right", "below", "near_x", "near_y")
 
 
 @lru_cache(maxsize=4096)
