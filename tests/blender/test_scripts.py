@@ -38,7 +38,7 @@ BODIES = (
     "float f(float q) { if (q < 0) return 1; return q*q; } R = f(x) + 2*f(y); if (t < 0.5) exit(); R[1] = 3;",
     # The chaos of a fractal shows each rounding, and 0 times what is infinite is 0 of constants alone.
     "float p = x, r = y, n = 4; int i; for (i = 0; i < 60; i++) { float w = p;"
-    " p = sin(p*p - r*r) + pow(abs(r), n)*0 + t; r = 2*w*r + cos(w)*sinh(r); if (hypot(p, r) > 400) break; }"
+    " p = sin(p*p - r*r) + 1e30*(r + 9)*1e30*0 + pow(t, n); r = 2*w*r + cos(w)*sinh(r); if (hypot(p, r) > 400) break; }"
     " R = vector(i/6.0, clamp(p, -1, 1), clamp(r, -1, 1));",
     "R = P/100 + N + 2*Ng + vector(I[0], u - u, v - v) + k + hidden[2] + q[1];",
 )  # fmt: skip
