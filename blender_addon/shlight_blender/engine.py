@@ -16,6 +16,7 @@ from . import record, running
 from .catchers import PARTS_WITH_PASSES, Part, Pictures, parts_of
 from .compat import write_pass
 from .frame import Frame, frame_of, memory_problem
+from .light_mix import LightMix, factors_of
 from .motion_blur import MeanPicture, middle_of, settings_of, times_of
 from .names import is_utf8, name_of, printable
 from .native import native_problem
@@ -208,9 +209,15 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         if inexact := inexact_light(record.last.statistics):
             record.last.report.add("Light", inexact, Effect.SLIGHT)
         stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.meshes.names())
-        if not denoises:
-            return mean.layers
-        return denoised(mean.layers, "high", settings["threads"], lambda _: self._wait("Denoising"))
+        layers = mean.layers
+        if denoises:
+            layers = denoised(layers, "high", settings["threads"], lambda _: self._wait("Denoising"))
+        factors, views = factors_of(depsgraph.scene), _views(depsgraph.scene.render)
+        if factors is not None and pictures.parts == [Part.WHOLE] and len(self._view_layers) == len(views) == 1:
+            record.last.mix = LightMix(layers, factors)
+        else:
+            record.last.mix = None
+        return layers
 
     def _export(self, depsgraph: Any, frame: Frame, view: str, part: Part, keeps: bool) -> Any:
         """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept.
@@ -226,7 +233,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         else:
             changes = changes_of(depsgraph) if self._is_new_frame else Changes()
         exported.look_from(depsgraph, frame=frame, camera=self._eye(depsgraph, view))
-        exported.update(depsgraph, changes, waiting=self._wait)
+        exported.update(depsgraph, changes, waiting=self._wait, factors=factors_of(depsgraph.scene))
         if keeps:
             self._exported[layer], self._is_new_frame = exported, False
         return exported

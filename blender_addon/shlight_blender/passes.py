@@ -82,7 +82,7 @@ def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
         name = name_of(group)
         found.append(LayerPass(f"Combined_{name}", "RGB", "COLOR", light=(1, name)))
     if scene.shlight.use_pass_lights:
-        for lamp in dict.fromkeys([*_lamps(view_layer), SURFACES, WORLD]):
+        for lamp in dict.fromkeys([*lamps_of(view_layer), SURFACES, WORLD]):
             found.append(LayerPass(f"Light_{lamp}", "RGB", "COLOR", light=(0, lamp)))
     return found
 
@@ -91,7 +91,7 @@ def _levels(view_layer: Any) -> int:
     return min(max(int(view_layer.pass_cryptomatte_depth), 2), 16)
 
 
-def _lamps(view_layer: Any) -> Iterator[str]:
+def lamps_of(view_layer: Any) -> Iterator[str]:
     """Names of lamps of a view layer and of the collections that it shows instances of."""
     seen: set[str] = set()
     waiting = list(view_layer.objects)
@@ -124,7 +124,7 @@ class PassWishes:
 def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
     """The requirements of a view layer's passes on the export."""
     return PassWishes(
-        bool(scene.shlight.use_pass_lights),
+        bool(scene.shlight.use_pass_lights or scene.shlight.use_light_mixer),
         len(view_layer.lightgroups) > 0,
         bool(view_layer.use_pass_uv),
         {name_of(aov): aov.type for aov in view_layer.aovs if aov.is_valid},
@@ -132,11 +132,11 @@ def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
 
 
 def pass_arguments(scene: Any, view_layer: Any) -> dict[str, Any]:
-    """Arguments of `shlight.render` for the passes of a view layer; none where it asks for no more than Combined."""
+    """Arguments of `shlight.render` for the passes of a view layer; none for Combined alone."""
     own_passes = [own for own in layer_passes(scene, view_layer) if own.source != SHADOW_CATCHER]
-    if not own_passes:
-        return {}
     wishes = pass_wishes(scene, view_layer)
+    if not own_passes and not wishes.lamps:
+        return {}
     sources = [own.source for own in own_passes if not own.source.startswith("aov_")]
     mist = getattr(scene.world, "mist_settings", None)
     reach = (0.0, 100.0, 1.0) if mist is None else (mist.start, mist.depth, FALLOFFS[mist.falloff])

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .frame import Frame
+from .light_mix import Factors, LightMix
 from .passes import denoised, with_features
 from .record import status_of
 
@@ -29,6 +30,7 @@ class Picture:
     pixels: NDArray[np.float32]
     frame: Frame
     status: str
+    mix: LightMix | None = None  # once it is whole, if the light mixer is on
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,7 @@ class Job:
     frame: Frame
     settings: dict[str, Any]
     denoises: bool = False
+    factors: Factors | None = None  # of the light mixer, if it is on
 
 
 class PictureMaker:
@@ -94,12 +97,12 @@ class PictureMaker:
 
         self._kept_light = self._kept_light or shlight.KeptLight()
 
-        def show(image: NDArray[np.float32], status: str) -> bool:
+        def show(image: NDArray[np.float32], status: str, mix: LightMix | None = None) -> bool:
             pixels = np.minimum(image[::-1], np.float32(LARGEST))
             with self._changed:
                 if number != self._number:
                     return False
-                self.picture = Picture(pixels, job.frame, status)
+                self.picture = Picture(pixels, job.frame, status, mix)
                 self.error = ""
             self._redraw()
             return True
@@ -116,12 +119,13 @@ class PictureMaker:
                 progress=goes_on,
                 on_update=lambda image, report: show(image, status_of(report)),
                 **(with_features({}) if job.denoises else {}),
+                groups=job.factors is not None,
                 **job.settings,
             )
             layers = result.layers
             if job.denoises and show(layers["combined"], "Denoising"):
                 layers = denoised(layers, "fast", job.settings["threads"], goes_on)
-            show(layers["combined"], "")
+            show(layers["combined"], "", None if job.factors is None else LightMix(layers, job.factors))
         except shlight.RenderCancelled:
             pass
         except Exception as error:

@@ -67,6 +67,45 @@ def _denoising(picture: str) -> Any:
     )
 
 
+def _mixed(row: Any, context: Any) -> None:
+    from .ui.light_mixer import show_mix
+
+    show_mix(context)
+
+
+class SHLIGHT_LightMix(bpy.types.PropertyGroup):
+    """A row of the light mixer; its name is that of a lamp."""
+
+    on: bpy.props.BoolProperty(name="On", description="Whether the lamp shines", default=True, update=_mixed)
+    power: bpy.props.FloatProperty(
+        name="Power",
+        description="Factor of the lamp's power",
+        default=1.0,
+        min=0.0,
+        soft_max=4.0,
+        step=5,
+        update=_mixed,
+    )
+    color: bpy.props.FloatVectorProperty(
+        name="Color",
+        description="Factor of the lamp's colour",
+        subtype="COLOR",
+        size=3,
+        default=(1.0, 1.0, 1.0),
+        min=0.0,
+        soft_max=1.0,
+        update=_mixed,
+    )
+
+
+def _switched(settings: Any, context: Any) -> None:
+    from .light_mix import follow_lamps
+
+    if settings.use_light_mixer:
+        follow_lamps(settings.id_data, context.view_layer)
+    _mixed(None, context)
+
+
 class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     """Settings of a scene for final renders."""
 
@@ -142,6 +181,14 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         description="A pass for what each lamp gives to the picture, one for surfaces that shine and one for the world",
         default=False,
     )
+    use_light_mixer: bpy.props.BoolProperty(
+        name="Light Mixer",
+        description="Multiply the light of each lamp by factors, which can be changed after the picture is rendered",
+        default=False,
+        update=_switched,
+    )
+    light_mix: bpy.props.CollectionProperty(type=SHLIGHT_LightMix)
+    light_mix_row: bpy.props.IntProperty(options={"HIDDEN"})
     world_width: bpy.props.IntProperty(
         name="World Width",
         description="Width of the picture that a world of other nodes than one colour or a picture becomes",
@@ -181,6 +228,7 @@ def are_registered() -> bool:
 
 
 def register() -> None:
+    bpy.utils.register_class(SHLIGHT_LightMix)
     for settings, owner in CLASSES.items():
         bpy.utils.register_class(settings)
         owner.shlight = bpy.props.PointerProperty(type=settings)
@@ -190,3 +238,4 @@ def unregister() -> None:
     for settings, owner in CLASSES.items():
         del owner.shlight
         bpy.utils.unregister_class(settings)
+    bpy.utils.unregister_class(SHLIGHT_LightMix)

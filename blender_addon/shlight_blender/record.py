@@ -39,6 +39,7 @@ class RenderRecord:
     operations: dict[str, int] = field(default_factory=dict)  # for a hit on each material whose values vary
     texture_bytes: int = 0
     scene_error: str = ""  # why the scene cannot be rendered at all
+    mix: Any = None  # a light_mix.LightMix of a picture of one view layer and one view, if the light mixer was on
     dark: str = ""  # why the picture of a view layer is black: the message that nothing gives light
 
     @property

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from . import record
 from .frame import Frame, frame_of
-from .picture_maker import Job, Picture, PictureMaker
+from .light_mix import Factors, factors_of
+from .picture_maker import LARGEST, Job, Picture, PictureMaker
 from .report import ExportError
 
 Matrix = NDArray[np.float64]
@@ -145,6 +146,8 @@ class RenderedViewport:
         self._updated = ""
         self._status = ""
         self._picture: Picture | None = None
+        self._factors: Factors | None = None  # of the light mixer, that the scene was exported with
+        self._mixed: Factors | None = None  # that the texture has
         self._texture: Any = None
         # Blender frees engines when a viewport is closed or shows something else.
         weakref.finalize(engine, self._maker.end)
@@ -160,14 +163,15 @@ class RenderedViewport:
 
     def draw(self, context: Any, depsgraph: Any) -> None:
         """Draws the newest picture, and has another one made if the view has changed."""
-        view_changed = self._needed(context, depsgraph) != self._shown
+        needed, factors = self._needed(context, depsgraph), factors_of(depsgraph.scene)
+        view_changed, mix_changed = needed != self._shown, self._factors_for(factors, needed) != self._factors
         if self._changes and (view_changed or not self._error):
             self._follow(context, depsgraph, True)
-        elif view_changed:
-            self._follow(context, depsgraph, self._exported.is_of_one_camera)
+        elif view_changed or (mix_changed and not self._error):
+            self._follow(context, depsgraph, self._exported.is_of_one_camera or mix_changed)
         picture = self._maker.picture
-        if picture is not self._picture:
-            self._picture, self._texture = picture, _texture(picture)
+        if picture is not self._picture or factors != self._mixed:
+            self._picture, self._mixed, self._texture = picture, factors, _texture(picture, factors)
         if picture is not None:
             self._draw_texture(context.region, depsgraph.scene, picture)
         self._say(self._error or self._maker.error or (picture.status if picture else ""))
@@ -186,12 +190,14 @@ class RenderedViewport:
         from .export import Changes, ExportedScene, everything
 
         needed = view, settings, denoises = self._needed(context, depsgraph)
-        start = time.perf_counter()
+        start, factors = time.perf_counter(), self._factors_for(factors_of(depsgraph.scene), needed)
         try:
             self._exported.look_through(view)
             changes, self._changes = self._changes, Changes()
-            changed = scene_may_change and self._exported.update(depsgraph, changes, viewport=context.space_data)
-            self._error = ""
+            changed = scene_may_change and self._exported.update(
+                depsgraph, changes, viewport=context.space_data, factors=factors
+            )
+            self._factors, self._error = factors if scene_may_change else self._factors, ""
         except Exception as error:
             if not isinstance(error, ExportError):
                 traceback.print_exc()
@@ -203,8 +209,15 @@ class RenderedViewport:
             self._updated = f"{changes.parts()} in {1e3 * (time.perf_counter() - start):.0f} ms"
             record.show_viewport(depsgraph.scene, self._exported)
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
-            self._maker.start(Job(self._exported.scene, view.frame, settings, denoises))
+            self._maker.start(Job(self._exported.scene, view.frame, settings, denoises, self._factors))
         self._shown = needed
+
+    def _factors_for(self, factors: Factors | None, needed: tuple[Any, ...]) -> Factors | None:
+        """Returns the factors to export lamps with: those of the picture as long as it can be mixed by `factors`."""
+        mix = self._maker.picture.mix if self._maker.picture is not None else None
+        if mix is None or factors is None or self._changes or needed != self._shown or not mix.covers(factors):
+            return factors
+        return self._factors
 
     def _redraw(self) -> None:
         try:
@@ -232,9 +245,11 @@ class RenderedViewport:
         gpu.state.blend_set("NONE")
 
 
-def _texture(picture: Picture | None) -> Any:
+def _texture(picture: Picture | None, factors: Factors | None) -> Any:
     if picture is None:
         return None
-    height, width = picture.pixels.shape[:2]
-    pixels = gpu.types.Buffer("FLOAT", width * height * 4, np.ascontiguousarray(picture.pixels).ravel())
-    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=pixels)
+    pixels, (height, width) = picture.pixels, picture.pixels.shape[:2]
+    if picture.mix is not None and factors is not None and picture.mix.covers(factors):
+        pixels = np.minimum(picture.mix.picture(factors), LARGEST)
+    buffer = gpu.types.Buffer("FLOAT", width * height * 4, np.ascontiguousarray(pixels).ravel())
+    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)

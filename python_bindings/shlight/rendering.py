@@ -22,6 +22,7 @@ __all__ = ["RenderResult", "render"]
 
 Pixels = NDArray[np.float32]
 GROUP = "combined_"  # what the names of light groups begin with among layers
+LIT_PASSES = ("direct", "indirect", "emission", "environment")  # ends of the names of passes that have light
 
 
 class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
@@ -78,6 +79,24 @@ class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
         """The names and arrays of `layers`."""
         return self.layers.items()
 
+    def mix(self, factors: Mapping[str, float | Sequence[float]]) -> RenderResult:
+        """The picture as it would be if the lights of these groups gave this many times their light, bounces included.
+
+        factors: by the group's name a number, or one for each of red, green and blue; others stay as they are.
+        Alpha stays, and so do passes that have no light; the others are left out. Light is linear, so that nothing is
+        rendered. Noise is multiplied as the light is.
+        Raises ValueError for a name that is in no group, and factors that are negative or not finite.
+        """
+        layers = {name: own for name, own in self.passes.items() if not name.endswith(LIT_PASSES)}
+        changes = {name: _checked_factor(name, factor, self.groups) for name, factor in factors.items()}
+        layers |= {GROUP + name: light * changes.get(name, np.float32(1)) for name, light in self.groups.items()}
+        layers["combined"] = np.array(self)
+        rgb = np.ascontiguousarray(layers["combined"][..., :3])  # sums of its rows are several times as fast
+        for name in changes:
+            rgb += layers[GROUP + name] - self.groups[name]
+        layers["combined"][..., :3] = np.maximum(rgb, 0) if changes else rgb
+        return RenderResult(layers, self.report)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a file by its suffix: .png has the picture in 8-bit sRGB, .exr all layers, if there are any.
 
@@ -109,6 +128,19 @@ class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
         parts += [f"{name}={list(own)}" for name, own in (("passes", self.passes), ("groups", self.groups)) if own]
         parts += [] if self.report is None else [repr(self.report)]
         return f"RenderResult({', '.join(parts)})"
+
+
+def _checked_factor(name: str, factor: float | Sequence[float], groups: Mapping[str, Pixels]) -> Pixels:
+    if name not in groups:
+        known = ", ".join(map(repr, groups)) if groups else "none; `render` makes them with groups=True"
+        raise ValueError(f"factors: there is no group {name!r}; the picture's groups are {known}")
+    try:
+        checked = np.asarray(factor, np.float32)
+    except (TypeError, ValueError):
+        checked = np.empty(0, np.float32)
+    if checked.shape not in {(), (3,)} or not (np.isfinite(checked) & (checked >= 0)).all():
+        raise ValueError(f"factors[{name!r}] must be a finite number of 0 or more, or three of them, got {factor!r}")
+    return checked
 
 
 class RenderOptions(TypedDict, total=False):

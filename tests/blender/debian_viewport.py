@@ -195,6 +195,7 @@ def steps():
     yield from compare_with_a_viewport_made_anew()
     yield from compare_with_final_render()
     yield from light_that_bounces()
+    yield from mix_of_lamps()
     yield from two_viewports()
 
 
@@ -253,6 +254,27 @@ def light_that_bounces():
     area().spaces[0].shading.type = "SOLID"
     settings.preview_max_bounces = 0
     yield
+
+
+def mix_of_lamps():
+    """A lamp's factor changes what is drawn and renders nothing, unless the picture lacks its light."""
+    settings = bpy.context.scene.shlight
+    area().spaces[0].shading.type = "RENDERED"
+    settings.use_light_mixer = True
+    yield from settled()
+    found["mixed"] = []
+    for power in (0.25, 100.0):
+        count, before = len(jobs), drawn()
+        settings.light_mix["Light"].power = power
+        yield from settled()
+        found["mixed"].append((len(jobs) - count, float(drawn().mean() / before.mean())))
+    settings.use_light_mixer = False
+    area().spaces[0].shading.type = "SOLID"
+    yield
+
+
+def drawn():
+    return np.array(shown[-1]._texture.read().to_list())[..., :3]
 
 
 def turn(angle):

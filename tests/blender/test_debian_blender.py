@@ -308,6 +308,10 @@ def test_the_rendered_viewport(tmp_path: Path) -> None:
     assert max(moved) <= 0.25 * first, found["gathered"]
     assert lit >= 0.5 * first, found["gathered"]
     assert found["lit anew"], "light from before a lamp was changed is left"
+    (dimmed_jobs, dimmed), (bright_jobs, bright) = found["mixed"]
+    assert (dimmed_jobs, bright_jobs) == (0, 1)
+    assert 0.2 < dimmed < 0.95
+    assert bright > 2.0
     assert found["viewports"] == 1
     assert found["threads"] == 0
     check_screen(tmp_path, found["region"])

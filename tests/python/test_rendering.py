@@ -95,6 +95,32 @@ def test_saved_layers_are_read_by_name(result: shlight.RenderResult, tmp_path: P
         images.read_layers(tmp_path / "plain.png")
 
 
+def test_a_mix_is_the_picture_of_lamps_of_other_power() -> None:
+    """It compares a scene of two lamps and a sky, with bounces, with renders whose lamps have the mix's power."""
+
+    def lit(key: Any, fill: Any) -> shlight.RenderResult:
+        scene = lit_floor()
+        scene.add_sphere_light((1, 0, 2), 0.3, np.multiply(4.0, key), group="Key")
+        scene.add_sphere_light((-1, 0, 2), 0.3, np.multiply([1.0, 2.0, 3.0], fill), group="Fill")
+        options = {"passes": ["depth", "diffuse_direct", "diffuse_color"], "max_bounces": 2, "pixel_samples": 4}
+        return shlight.render(scene, 12, 9, groups=True, shadow_rays=64, **options)
+
+    rendered = lit(1.0, 1.0)
+    mix = rendered.mix({"Key": 1.5, "Fill": (1, 0.9, 0.0)})
+    expected = lit(1.5, (1, 0.9, 0.0))
+    np.testing.assert_allclose(np.asarray(mix), np.asarray(expected), rtol=2e-3, atol=2e-3 * float(expected.max()))
+    total = sum(light.astype(float) for light in mix.groups.values())
+    np.testing.assert_allclose(np.asarray(mix)[..., :3], total, rtol=1e-5, atol=1e-5)
+    assert set(mix.passes) == {"depth", "diffuse_color"}
+    np.testing.assert_array_equal(rendered.mix({}), rendered)
+    dark = rendered.mix(dict.fromkeys(rendered.groups, 0))
+    assert (np.asarray(dark)[..., :3] <= 1e-6 * float(rendered.max())).all()
+    assert (np.asarray(dark) >= 0).all()
+    for wrong in ({"Kye": 1}, {"Key": -1}, {"Key": float("nan")}, {"Key": (1, 2)}, {"Key": "much"}):
+        with pytest.raises(ValueError, match=r"^factors"):
+            rendered.mix(wrong)
+
+
 def test_a_notebook_shows_the_picture(result: shlight.RenderResult, tmp_path: Path) -> None:
     (tmp_path / "shown.png").write_bytes(result._repr_png_() or b"")
     np.testing.assert_array_equal(images.read_texture(tmp_path / "shown.png"), images.linear_to_srgb8(result))

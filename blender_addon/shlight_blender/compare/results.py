@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the latest comparison found, and its pictures as images of Blender.
-
-The images are files in Blender's temporary folder, which goes with it: Blender would ask for a place for images that
-are in no file before it quits.
-"""
+"""What the latest comparison found, and its pictures as images of Blender."""
 
 from __future__ import annotations
 
@@ -15,15 +11,12 @@ from typing import Any
 
 import bpy
 import numpy as np
-import numpy.typing as npt
 
 from ..names import name_of
+from ..shown_images import Pixels, draw_image, forget_changes, image_editors, make_image
 from .pictures import difference_limit, in_palette
 
 COMPARISON, DIFFERENCE, REFERENCE = "shlight Comparison", "shlight Difference", "shlight Reference"
-SETTLE_SECONDS = 0.5
-
-Pixels = npt.NDArray[np.float32]
 
 
 @dataclass
@@ -80,25 +73,7 @@ def make_images() -> None:
         return
     for name, pixels in last.pictures(bpy.context.window_manager.shlight_compare.split).items():
         if bpy.data.images.get(name) is None:
-            _make_image(name, pixels, last.folder)
-
-
-def _make_image(name: str, pixels: Pixels, folder: Path) -> None:
-    height, width = pixels.shape[:2]
-    is_light = name != DIFFERENCE  # whose bytes are shown as they are
-    image = bpy.data.images.new(name, width, height, alpha=is_light, float_buffer=is_light)
-    if is_light:
-        image.alpha_mode = "PREMUL"
-    image.use_view_as_render = is_light
-    image.file_format = "OPEN_EXR" if is_light else "PNG"
-    image.filepath_raw = str(folder / name) + (".exr" if is_light else ".png")
-    _write(image, pixels)
-    image.save()
-
-
-def _write(image: Any, pixels: Pixels) -> None:
-    image.pixels.foreach_set(np.ascontiguousarray(pixels).ravel())
-    image.update()
+            make_image(name, pixels, last.folder, is_light=name != DIFFERENCE)
 
 
 def show_split(split: float) -> None:
@@ -106,16 +81,7 @@ def show_split(split: float) -> None:
     image = bpy.data.images.get(COMPARISON)
     if last is None or image is None:
         return
-    _write(image, last.split(split))
-    if bpy.app.timers.is_registered(_settle):
-        bpy.app.timers.unregister(_settle)
-    bpy.app.timers.register(_settle, first_interval=SETTLE_SECONDS)
-
-
-def _settle() -> None:
-    image = bpy.data.images.get(COMPARISON)
-    if last is not None and image is not None:
-        image.save()
+    draw_image(image, last.split(split))
 
 
 def remove() -> None:
@@ -128,8 +94,7 @@ def remove() -> None:
 def forget() -> None:
     """Forgets the results, as of a file that is closed."""
     global last
-    if bpy.app.timers.is_registered(_settle):
-        bpy.app.timers.unregister(_settle)
+    forget_changes()
     if last is not None:
         shutil.rmtree(last.folder, ignore_errors=True)
     last = None
@@ -141,12 +106,6 @@ def _images() -> list[Any]:
         return []
     named = (bpy.data.images.get(name) for name in last.names)
     return [image for image in named if image is not None and image.filepath_raw.startswith(str(last.folder))]
-
-
-def image_editors() -> list[Any]:
-    """Areas of all windows."""
-    windows = bpy.context.window_manager.windows
-    return [area for window in windows for area in window.screen.areas if area.type == "IMAGE_EDITOR"]
 
 
 def shown() -> list[tuple[Any, str]]:

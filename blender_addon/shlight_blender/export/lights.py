@@ -61,7 +61,7 @@ def add_lamp(
     place = f"Light '{name_of(lamp_object)}'"
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # guides Cycles' sampling of the world, emits nothing
-    unit = float(lamp.energy) * lamp_tint(lamp)
+    unit = float(lamp.energy) * lamp_tint(lamp) * surroundings.factors.get(name_of(lamp_object), 1.0)
     glow = _glow_of_nodes(lamp, to_world, place, report, surroundings)
     power = unit * glow.mean
     if not np.isfinite(power).all() or not np.isfinite(to_world).all():

@@ -20,6 +20,7 @@ from shlight.nodes import Color, Shader, Value, Vector
 from shlight.nodes.values import Varying, color, maximum, number, vector
 
 from ..catchers import Part
+from ..light_mix import Factors
 from ..names import name_of
 from ..passes import PassWishes
 from ..report import Effect, ExportReport
@@ -120,6 +121,7 @@ class Surroundings:
     light_bounces: bool = False
     linking: Linking = field(default_factory=lambda: Linking({}))
     part: Part = Part.WHOLE  # of the scene that is shown
+    factors: Factors = field(default_factory=dict)  # of the light mixer
     view_is_used: bool = field(default=False, init=False)
 
     @property

@@ -15,6 +15,7 @@ import shlight
 from ..catchers import Part, is_catcher
 from ..compat import curve_settings, dicing_settings
 from ..frame import Frame, frame_of
+from ..light_mix import Factors, factors_of
 from ..names import name_of
 from ..passes import PassWishes, pass_wishes
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
@@ -56,9 +57,10 @@ class _State(NamedTuple):
     passes: PassWishes = PassWishes()
     shown: tuple[Any, ...] = ()  # whether meshes are, what is culled, and the objects of all instances that are seen
     linking: Linking = Linking({})
+    factors: Factors = {}  # of the light mixer
 
     @staticmethod
-    def of(depsgraph: Any, viewport: Any, culling: Culling | None) -> _State:
+    def of(depsgraph: Any, viewport: Any, culling: Culling | None, factors: Factors | None) -> _State:
         scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         world = world_of(scene, view_layer)
         moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
@@ -74,9 +76,10 @@ class _State(NamedTuple):
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
             (override and override.as_pointer(), bounces > 0),
             scene.frame_current_final if moving else 0.0,
-            pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
+            pass_wishes(scene, view_layer) if viewport is None else PassWishes(lamps=factors is not None),
             (view_layer.use_solid, view_layer.use_strand, culling, *drawing, *seen),
             Linking.of(depsgraph),
+            factors or {},
         )
 
 
@@ -140,12 +143,14 @@ class ExportedScene:
         *,
         viewport: Any = None,
         waiting: Waiting | None = None,
+        factors: Factors | None = None,
     ) -> bool:
         """Takes over what has changed; False if nothing has. `waiting`, and errors, as of `export_scene`.
 
         viewport: a SpaceView3D; what is hidden in it is left out, in place of what is hidden in renders.
+        factors: of the light mixer, None where it is off.
         """
-        self._find_more(changes, _State.of(depsgraph, viewport, self._culling))
+        self._find_more(changes, _State.of(depsgraph, viewport, self._culling, factors))
         blender_scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
         if self._state.linking.has_too_many_sets():
@@ -162,6 +167,7 @@ class ExportedScene:
                 self._view, passes=self._state.passes, light_bounces=bounces, part=self._part
             )
         self._surroundings.depsgraph, self._surroundings.linking = depsgraph, self._state.linking
+        self._surroundings.factors = self._state.factors
         if changes:
             self._walk(depsgraph, changes, viewport, _asking(waiting))
         report = self._new_report("files")
@@ -193,7 +199,7 @@ class ExportedScene:
         changes.world |= moved or state.world != old.world
         changes.materials |= moved or looks_elsewhere or state.materials != old.materials
         changes.objects |= state.shown != old.shown or state.linking != old.linking
-        changes.lamps |= moved or changes.world or changes.objects
+        changes.lamps |= moved or changes.world or changes.objects or state.factors != old.factors
 
     def _walk(self, depsgraph: Any, changes: Changes, viewport: Any, ask: Callable[[], None]) -> None:
         """Adds the lamps and meshes that are seen, where they have changed."""
@@ -289,7 +295,7 @@ def export_scene(
     """
     exported = ExportedScene()
     exported.look_from(depsgraph, frame=frame or frame_of(depsgraph.scene_eval.render), camera=camera)
-    exported.update(depsgraph, everything(), waiting=waiting)
+    exported.update(depsgraph, everything(), waiting=waiting, factors=factors_of(depsgraph.scene_eval))
     return exported
 
 

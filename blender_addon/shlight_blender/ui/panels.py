@@ -12,7 +12,7 @@ import bpy
 from ..compare import panel as compare_panel
 from ..compat import nodes_by_engine
 from ..running import ENGINE
-from . import data, report, settings
+from . import data, light_mixer, report, settings
 
 # Panels for every engine that show what shlight does not have, or are replaced below.
 EXCLUDED = {
@@ -36,7 +36,13 @@ INCLUDED = {
 }
 
 # Panels of a tab are shown in this order.
-CLASSES = (*settings.CLASSES, *report.CLASSES, *compare_panel.CLASSES, *data.CLASSES)
+CLASSES = (
+    *settings.CLASSES,
+    *report.CLASSES,
+    *light_mixer.CLASSES,
+    *compare_panel.CLASSES,
+    *data.CLASSES,
+)
 
 
 def _panels(base: Any = bpy.types.Panel) -> Iterator[Any]:
@@ -80,10 +86,12 @@ def register() -> None:
     for panel in shared_panels():
         panel.COMPAT_ENGINES.add(ENGINE)
     _offer_nodes()
+    light_mixer.register()
 
 
 def unregister() -> None:
     """Leaves Blender's panels and menu, and removes our own."""
+    light_mixer.unregister()
     while _own_polls:
         item, poll = _own_polls.popitem()
         item.poll = poll
