@@ -68,8 +68,15 @@ T* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFor
     return static_cast<T*>(buffer);
 }
 
+/// A geometry that rays of all kinds meet: by default Embree 4 has it met by those of the first kind alone.
+Geometry new_geometry(RTCDevice device, RTCGeometryType type) {
+    Geometry geometry(rtcNewGeometry(device, type));
+    rtcSetGeometryMask(geometry.get(), ~0U);
+    return geometry;
+}
+
 Geometry triangle_geometry(RTCDevice device, std::span<const Vec3f> vertices, std::span<const Triangle> triangles) {
-    Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    Geometry geometry = new_geometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     std::ranges::copy(vertices, new_buffer<Vec3f>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
                                                   vertices.size()));
     std::ranges::copy(triangles, new_buffer<Triangle>(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
@@ -90,10 +97,10 @@ void meet_from_outside(const RTCFilterFunctionNArguments* given) {
 }
 
 Geometry round_geometry(RTCDevice device, const RoundParts& parts) {
-    Geometry geometry(
-        rtcNewGeometry(device, parts.form == SurfaceForm::ribbons ? RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE
-                               : parts.form == SurfaceForm::tubes ? RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE
-                                                                  : RTC_GEOMETRY_TYPE_SPHERE_POINT));
+    Geometry geometry =
+        new_geometry(device, parts.form == SurfaceForm::ribbons ? RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE
+                             : parts.form == SurfaceForm::tubes ? RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE
+                                                                : RTC_GEOMETRY_TYPE_SPHERE_POINT);
     std::ranges::copy(parts.points, new_buffer<glm::vec4>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX,
                                                           RTC_FORMAT_FLOAT4, parts.points.size()));
     if (parts.form != SurfaceForm::spheres) {
