@@ -12,13 +12,21 @@ from .report import ExportReport
 
 # Share of what is shaded that may be over the tolerance without a word.
 SILENT_SHARE = 0.03
+LONG = 99.5  # seconds; longer times are told in minutes
 
 
 def status_of(report: Any) -> str:
     """A line about a picture as it stands; report: its shlight.RenderReport."""
-    noise = f"Noise {report.noise:.4f} | " if report.passes > 0 and report.noise > 0.0 else ""
-    left = f"Remaining {timedelta(seconds=round(report.seconds_left))}" if report.seconds_left > 0.0 else ""
-    return f"Pass {report.passes + 1} | {noise}{left}".removesuffix(" | ")
+    taken, left = report.render_seconds, report.seconds_left
+    if not left > 0.0:
+        return "Rendering"
+    words = f"{left:.0f} s" if left < LONG else str(timedelta(seconds=round(left)))
+    return f"Rendering {taken / (taken + left):.0%}, {words} left"
+
+
+def light_name(max_bounces: int) -> str:
+    """Names what a picture shows."""
+    return "direct light" if max_bounces == 0 else f"{max_bounces} bounce{'s' if max_bounces > 1 else ''}"
 
 
 def inexact_light(report: Any) -> str:
@@ -66,7 +74,8 @@ def begin(scene: Any) -> RenderRecord:
 def show_viewport(scene: Any, exported: Any) -> None:
     """Shows what a viewport's `export.ExportedScene` says."""
     global shown
-    shown = RenderRecord(name_of(scene), report=exported.report)
+    bounces = {"max_bounces": int(scene.shlight.preview_max_bounces)}
+    shown = RenderRecord(name_of(scene), settings=bounces, report=exported.report)
 
 
 def forget() -> None:

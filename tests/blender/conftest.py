@@ -50,11 +50,12 @@ class Studio(PlainStudio):
         assert np.abs(image[..., 3] - reference[..., 3]).mean() <= alpha
         return image, reference
 
-    def messages(self, **options: int) -> list[str]:
-        """The report's lines after an export of the scene; `options` are those of Report.lines."""
+    def messages(self, most: int = 4, *, of_depths: bool = False) -> list[str]:
+        """The report's lines after an export of the scene; of_depths: also those that Max Bounces of 0 explains."""
         from shlight_blender.export import export_scene
 
-        return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(**options)
+        lines = export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(most)
+        return [line for line in lines if of_depths or not line.endswith("while Max Bounces is 0")]
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:

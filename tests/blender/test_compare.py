@@ -133,14 +133,21 @@ def test_figures_pictures_and_places_are_true(still_life: Any) -> None:
 
 
 def test_without_a_reference_both_are_compared(studio: Any) -> None:
-    """In a file that was never saved, without anything that shlight draws otherwise."""
+    """In a file that was never saved, without anything that shlight draws otherwise; with bounces, then without."""
     studio.simple_scene()
+    studio.scene.shlight.max_bounces = 1
     assert bpy.ops.shlight.compare() == {"FINISHED"}
     found = results.last
     assert results.REFERENCE not in bpy.data.images
     assert found.figures["rel_mse_of_both"] == pytest.approx(rel_mse(found.shlight, found.cycles), rel=1e-4)
-    assert f"No reference; relMSE between the two: {found.figures['rel_mse_of_both']:.2e}" in panel.lines(found.figures)
+    assert f"No reference; between the two: relMSE {found.figures['rel_mse_of_both']:.2e}" in panel.lines(found.figures)
     assert found.figures["differences"] == []
+    assert panel.lines(found.figures)[0] == "All pictures: 1 bounce"
+    assert bpy.ops.shlight.compare(light="DIRECT") == {"FINISHED"}
+    assert panel.lines(results.last.figures)[0] == "All pictures: direct light"
+    assert results.last.cycles.mean() < found.cycles.mean()
+    strong = {**found.figures, "rel_mse_of_both": 35.7}
+    assert "No reference; between the two: differs strongly" in panel.lines(strong)
     bpy.ops.wm.read_homefile(use_empty=True)
     assert results.last is None
     assert not list(Path(bpy.app.tempdir).glob("shlight_*"))

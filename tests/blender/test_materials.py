@@ -220,7 +220,7 @@ def test_unsupported_shaders_are_named(studio: Any, shader: str, inputs: dict[st
     studio.area()
     studio.camera()
     studio.plane(material=studio.material(shader, name="Odd", **inputs))
-    lines = studio.messages(most=99)
+    lines = studio.messages(most=99, of_depths=True)
     assert [line for line in lines if named in line and "Material 'Odd'" in line], lines
     studio.scene.render.resolution_percentage = 25
     assert np.isfinite(studio.render("SHLIGHT")).all()

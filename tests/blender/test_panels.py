@@ -82,18 +82,18 @@ def test_ray_visibility_is_shown(studio: Any) -> None:
     assert shown["Camera"].shown == set()
 
 
-def test_presets_set_what_they_say_and_preview_is_the_default(studio: Any) -> None:
+def test_presets_set_what_they_say_and_standard_is_the_default(studio: Any) -> None:
     chosen, values = studio.scene.shlight, {}
-    for name in ("default", "Preview", "Draft", "Final"):
+    for name in ("default", "Standard", "Draft", "High"):
         if name != "default":
             chosen.shadow_rays, chosen.pixel_samples, chosen.time_limit = 5, 2, 3.0
             file = str(settings.PRESETS / f"{name}.py")
             bpy.ops.script.execute_preset(filepath=file, menu_idname="SHLIGHT_PT_presets")
             assert chosen.time_limit == 3.0
         values[name] = {each: getattr(chosen, each) for each in settings.PRESET_SETTINGS}
-    assert values["Preview"] == values["default"]
+    assert values["Standard"] == values["default"]
     assert values["Draft"]["noise_threshold"] == pytest.approx(0.05)
-    assert values["Final"]["noise_threshold"] == pytest.approx(0.002)
+    assert values["High"]["noise_threshold"] == pytest.approx(0.002)
 
 
 def test_presets_of_the_user_stand_beside_those_of_the_add_on(studio: Any) -> None:
@@ -104,7 +104,7 @@ def test_presets_of_the_user_stand_beside_those_of_the_add_on(studio: Any) -> No
         patch.setattr(bpy.types.Menu, "path_menu", lambda self, paths, operator, **_: listed.extend(paths))
         panel.path_menu(menu, ["/of/the/user"], panel.preset_operator)
     assert listed == [str(settings.PRESETS), "/of/the/user"]
-    assert {path.stem for path in settings.PRESETS.glob("*.py")} == {"Draft", "Preview", "Final"}
+    assert {path.stem for path in settings.PRESETS.glob("*.py")} == {"Draft", "Standard", "High"}
 
 
 def test_the_report_leads_to_its_places(studio: Any) -> None:
@@ -137,6 +137,31 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
         bpy.ops.shlight.show_place(place="Object 'Gone'")
     studio.scene.name = "Another"
     assert "Render to see" in drawn_by(report.report, **context).text
+
+
+def test_what_is_shown_of_direct_light_is_said(studio: Any) -> None:
+    """At no bounces the report begins with it, metal is named, and the tick is of these depths."""
+    studio.simple_scene()
+    context = {"scene": studio.scene, "region": SimpleNamespace(width=2000)}
+    context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    expected = {
+        0: " Direct light only: Max Bounces is 0 As Cycles draws direct light",
+        1: " As Cycles draws it with 1 bounce",
+    }
+    for bounces, text in expected.items():
+        studio.scene.shlight.max_bounces = bounces
+        studio.render("SHLIGHT")
+        assert drawn_by(report.report, **context).text == text
+        assert ("Direct light only" in drawn_by(settings.sampling, **context).text) == (bounces == 0)
+    bpy.data.objects["Box"].data.materials[0] = studio.material("ShaderNodeBsdfGlossy", name="Chrome", Roughness=0.0)
+    studio.render("SHLIGHT")
+    assert "As Cycles draws it" in drawn_by(report.report, **context).text
+    studio.scene.shlight.max_bounces = 0
+    studio.render("SHLIGHT")
+    shown = drawn_by(report.report, **context).text
+    assert "Direct light only" in shown
+    assert "It reflects lamps and the world, and no surface, while Max Bounces is 0" in shown
+    assert "As Cycles" not in shown
 
 
 def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:

@@ -24,7 +24,7 @@ PAINTED_SOURCES = {"FILE", "GENERATED"}  # of images whose pixels may be in no f
 class Job:
     """One comparison, in a temporary folder. `end` ends the other Blender at once and removes the folder."""
 
-    def __init__(self, context: Any, *, denoise: bool, reference_seconds: float) -> None:
+    def __init__(self, context: Any, *, light: str = "ALL", denoise: bool, reference_seconds: float) -> None:
         """Writes the copy and starts the other Blender; WorkerError where that cannot be."""
         _check(context)
         try:
@@ -39,6 +39,7 @@ class Job:
                     "scene_name": context.scene.name,
                     "view_layer": context.view_layer.name,
                     "use_scripts": context.preferences.filepaths.use_scripts_auto_execute and not bpy.app.autoexec_fail,
+                    "light": light,
                     "denoise": denoise,
                     "reference_seconds": reference_seconds,
                     "images": _save_copy(context.scene, self.folder),

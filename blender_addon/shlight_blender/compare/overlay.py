@@ -12,6 +12,7 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 from ..compat import FLAT_SHADER
+from ..record import light_name
 from . import results
 
 RADIUS, CORNERS = 14.0, 32
@@ -53,8 +54,9 @@ def _draw() -> None:
     if image.name == results.COMPARISON:
         x = split_in(region)
         _line([(x, bottom), (x, top)])
-        _text("shlight", x - margin, top - 2 * margin, scale, to_the_left=True)
-        _text("Cycles", x + margin, top - 2 * margin, scale)
+        light = light_name(found.figures["shlight"]["settings"]["max_bounces"])
+        _text(f"shlight, {light}", x - margin, top - 2 * margin, scale, to_the_left=True)
+        _text(f"Cycles, {light}", x + margin, top - 2 * margin, scale)
     elif image.name == results.DIFFERENCE:
         legend = f"brown: shlight is darker, violet: brighter; {found.limit:g} % and more at the ends"
         _text(legend, left + margin, bottom + margin, scale)

@@ -9,21 +9,29 @@ import bpy
 
 from ..compat import draw_progress
 from ..names import name_of, one_line
+from ..record import light_name
 from ..shown_images import image_editors
 from ..ui.base import draw_text, panel, with_names_aside
 from ..ui.report import draw_place
 from ..worker_process import WorkerError
 from . import overlay, results
 from .job import Job, session
-from .pictures import light_name
 
 TICK_SECONDS = 0.2
+MOST_REL_MSE = 1.0  # above, the figure says nothing
 GRASP = 12.0  # pixels beside the line of the split
+
+
+LIGHTS = [
+    ("ALL", "All Light", "Both render the bounces of the scene's settings"),
+    ("DIRECT", "Direct Light", "Both render direct light alone"),
+]
 
 
 class Effort:
     """What is asked of Cycles, in the panel and by the operator."""
 
+    light: bpy.props.EnumProperty(name="Light", description="What both render", items=LIGHTS, default="ALL")
     denoise: bpy.props.BoolProperty(
         name="Denoise", description="Cycles denoises its picture, which counts as its time", default=False
     )
@@ -118,7 +126,8 @@ class SHLIGHT_OT_compare(Effort, bpy.types.Operator):
         try:
             if session.job is not None:
                 raise WorkerError("a comparison is running; Esc in its window cancels it")
-            self._job = session.job = Job(context, denoise=self.denoise, reference_seconds=self.reference_seconds)
+            effort = {name: getattr(self, name) for name in Effort.__annotations__}
+            self._job = session.job = Job(context, **effort)
         except WorkerError as error:
             self._fail(error)
             return False
@@ -244,10 +253,12 @@ def comparison(layout: Any, context: Any) -> None:
         return
     settings = context.window_manager.shlight_compare
     column = with_names_aside(layout.column())
+    column.row().prop(settings, "light", expand=True)
     column.prop(settings, "denoise", text="Denoise Cycles")
     column.prop(settings, "reference_seconds")
     button = layout.operator(SHLIGHT_OT_compare.bl_idname, text="Compare", icon="RENDER_STILL")
-    button.denoise, button.reference_seconds = settings.denoise, settings.reference_seconds
+    for name in Effort.__annotations__:
+        setattr(button, name, getattr(settings, name))
     if results.are_of(context.scene):
         _draw_results(layout, context, results.last)
 
@@ -274,14 +285,18 @@ def lines(figures: dict[str, Any]) -> list[str]:
     light = f"All pictures: {light_name(ours['settings']['max_bounces'])}"
     times = [f"shlight: {ours['seconds']:.2f} s", f"Cycles: {theirs['seconds']:.2f} s, {theirs['samples']} samples"]
     if "reference" not in figures:
-        return [light, *times, f"No reference; relMSE between the two: {figures['rel_mse_of_both']:.2e}"]
+        return [light, *times, f"No reference; between the two: {_rel_mse(figures['rel_mse_of_both'])}"]
     reference = figures["reference"]
     return [
         light,
-        *(f"{line}, relMSE {part['rel_mse_measured']:.2e}" for line, part in zip(times, (ours, theirs), strict=True)),
+        *(f"{line}, {_rel_mse(part['rel_mse_measured'])}" for line, part in zip(times, (ours, theirs), strict=True)),
         f"Reference: {reference['seconds']:.1f} s, {reference['samples']} samples; of each relMSE "
         f"{reference['noise_rel_mse']:.2e} is its noise",
     ]
+
+
+def _rel_mse(value: float) -> str:
+    return f"relMSE {value:.2e}" if value <= MOST_REL_MSE else "differs strongly"
 
 
 def _draw_place(layout: Any, context: Any, number: int, place: dict[str, Any]) -> None:

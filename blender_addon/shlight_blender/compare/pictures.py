@@ -23,11 +23,6 @@ def difference_limit(difference: npt.NDArray[np.float64]) -> float:
     return next(step * power for step in (1, 2, 5, 10) if step * power >= needed * (1 - 1e-9))
 
 
-def light_name(max_bounces: int) -> str:
-    """Names what pictures show, for their titles."""
-    return "direct light" if max_bounces == 0 else f"{max_bounces} bounce{'s' if max_bounces > 1 else ''}"
-
-
 def in_palette(values: npt.NDArray[np.floating[Any]]) -> npt.NDArray[np.float32]:
     """The palette's colours (…, 4), sRGB and opaque, of values (…) from -1 to 1."""
     colors = np.array([list(bytes.fromhex(color)) for color in PALETTE_COLORS]) / 255.0

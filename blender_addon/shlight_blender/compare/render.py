@@ -239,6 +239,7 @@ class PanelRequest(Request):
     scene_name: str
     view_layer: str
     use_scripts: bool  # of the file
+    light: str = "ALL"  # or DIRECT
     images: dict[str, str] = field(default_factory=dict)  # see background.save_unsaved_images
     measured: dict[str, str] = field(default_factory=dict)  # files by names of materials
 
@@ -264,6 +265,8 @@ class PanelWorker(Worker):
             if path := self._request.measured.get(name_of(material)):
                 material.shlight.measured_file = path
         self._scene.render.use_crop_to_border = True
+        if self._request.light == "DIRECT":
+            self._scene.shlight.max_bounces = 0
         if self._request.denoise:
             use_denoiser(self._scene.cycles)  # its absence is said before anything is rendered
 

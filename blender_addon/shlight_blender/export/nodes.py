@@ -193,6 +193,11 @@ class NodeInputs:
         if not self.reader.surroundings.light_bounces:
             self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
 
+    def remark_nothing_reflected(self) -> None:
+        """Reports metal in a picture of direct light."""
+        if not self.reader.surroundings.light_bounces:
+            self.remark("it reflects lamps and the world, and no surface, while Max Bounces is 0", Effect.THING)
+
     def ignore_unless(self, name: str, neutral: float) -> None:
         """Reports an input that is not supported, unless it has the value at which it does nothing."""
         if name in self.node.inputs and self.number(name).constant != neutral:

@@ -55,6 +55,8 @@ def _tangent(inputs: NodeInputs) -> Vector:
 
 
 def _read_layered(inputs: NodeInputs) -> Shader:
+    if inputs.number("Metallic").constant != 0.0:
+        inputs.remark_nothing_reflected()
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_hidden_behind("'Transmission Weight'")
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
@@ -77,6 +79,8 @@ def _read_sum(inputs: NodeInputs) -> Shader:
         inputs.remark(text, Effect.SLIGHT)
     base = positive(inputs.color("Base Color"))
     metallic = clamp(inputs.number("Metallic"))
+    if metallic.constant != 0.0:
+        inputs.remark_nothing_reflected()
     roughness = clamp(inputs.number("Roughness"))
     specular = maximum(inputs.number("Specular"), 0.0)
     tint = inputs.number("Specular Tint")
@@ -215,10 +219,12 @@ def _roughness(inputs: NodeInputs) -> Value:
 
 
 def _glossy(inputs: NodeInputs) -> Shader:
+    inputs.remark_nothing_reflected()
     return nodes.glossy(inputs.color("Color"), _roughness(inputs), **_microfacets(inputs), **_anisotropy(inputs))
 
 
 def _metallic(inputs: NodeInputs) -> Shader:
+    inputs.remark_nothing_reflected()
     roughness, rest, stretch = inputs.number("Roughness"), _microfacets(inputs), _anisotropy(inputs)
     if inputs.node.fresnel_type == "F82":
         return nodes.metallic(inputs.color("Base Color"), inputs.color("Edge Tint"), roughness, **rest, **stretch)

@@ -12,6 +12,7 @@ import bpy
 from ..running import ENGINE
 
 PIXELS_PER_LETTER = 7.0
+DIRECT_ONLY = "Direct light only: Max Bounces is 0"
 # Tabs of the Properties editor by the part of panels' names, and what of the context a tab is about.
 TABS = {
     "RENDER": ("render", "scene"),

@@ -37,9 +37,10 @@ INCLUDED = {
 
 # Panels of a tab are shown in this order.
 CLASSES = (
-    *settings.CLASSES,
+    *settings.SAMPLING,
     *report.CLASSES,
     *light_mixer.CLASSES,
+    *settings.FURTHER,
     *compare_panel.CLASSES,
     *data.CLASSES,
 )

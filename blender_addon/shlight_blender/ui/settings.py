@@ -11,7 +11,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
 from ..compat import position_owner
-from .base import panel
+from .base import DIRECT_ONLY, panel
 
 PRESETS = Path(__file__).with_name("presets")
 PRESET_SETTINGS = (
@@ -26,7 +26,7 @@ PRESET_SETTINGS = (
 
 
 class SHLIGHT_PT_presets(PresetPanel, bpy.types.Panel):
-    """Draft, Preview and Final, and presets of the user: settings of the scene that belong together."""
+    """Draft, Standard and High, and presets of the user: settings of the scene that belong together."""
 
     bl_label = "Presets"
     preset_subdir = "shlight"
@@ -62,6 +62,8 @@ def _props(layout: Any, owner: Any, *names: str) -> None:
 def sampling(layout: Any, context: Any) -> None:
     """How many camera rays pixels get."""
     settings = context.scene.shlight
+    if settings.max_bounces == 0:
+        layout.label(text=DIRECT_ONLY, icon="INFO")
     layout.prop(settings, "noise_threshold")
     samples = ["pixel_samples"] if settings.pixel_samples else ["max_samples", "min_samples"]
     _props(layout.column(align=True), settings, *samples)
@@ -78,7 +80,7 @@ def sampling_viewport(layout: Any, context: Any) -> None:
     layout.prop(context.scene.render, "preview_pixel_size")
 
 
-@panel("SHLIGHT_RENDER_PT_light", "Light", closed=True)
+@panel("SHLIGHT_RENDER_PT_light", "Light Paths", closed=True)
 def light(layout: Any, context: Any) -> None:
     """Paths of light."""
     column = layout.column(align=True)
@@ -152,15 +154,5 @@ def performance(layout: Any, context: Any) -> None:
     layout.prop(render, "use_persistent_data", text="Persistent Data")
 
 
-CLASSES = (
-    SHLIGHT_PT_presets,
-    SHLIGHT_OT_add_preset,
-    sampling,
-    sampling_viewport,
-    light,
-    light_advanced,
-    shadows,
-    film,
-    motion_blur,
-    performance,
-)
+SAMPLING = (SHLIGHT_PT_presets, SHLIGHT_OT_add_preset, sampling, sampling_viewport)
+FURTHER = (light, light_advanced, shadows, film, motion_blur, performance)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from shlight_blender.compare.measure import error_text
-from shlight_blender.compare.pictures import light_name
+from shlight_blender.record import light_name
 
 from .options import Options
 

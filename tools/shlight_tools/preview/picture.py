@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 from shlight_blender.compare.measure import error_text
-from shlight_blender.compare.pictures import PALETTE, difference_limit, light_name
+from shlight_blender.compare.pictures import PALETTE, difference_limit
+from shlight_blender.record import light_name
 
 Image = npt.NDArray[np.float32]
 

@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from shlight import images, metrics
-from shlight_blender.compare.pictures import PALETTE, light_name
+from shlight_blender.compare.pictures import PALETTE
+from shlight_blender.record import light_name
 
 from ..preview.picture import common_exposure
 from .records import Record, badness, is_measured
