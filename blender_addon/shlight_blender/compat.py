@@ -51,6 +51,11 @@ def panorama_settings(lens: Any) -> Any:
     return lens if IS_BLENDER_4 else lens.cycles
 
 
+def has_panorama_settings(lens: Any) -> bool:
+    """Whether the owner of a camera's panorama settings is there."""
+    return IS_BLENDER_4 or hasattr(lens, "cycles")
+
+
 # The Principled BSDF has a specular layer over the diffuse base, or is a plain sum of both.
 PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 # Its inputs that are not supported, with the values at which they do nothing.

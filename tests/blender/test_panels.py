@@ -38,7 +38,7 @@ class Layout:
     def label(self, text: str, **_: Any) -> None:
         self.text += " " + text
 
-    def column(self, align: bool = False) -> Layout:
+    def column(self, **_: Any) -> Layout:
         return self
 
     row = box = column
@@ -78,7 +78,14 @@ def test_ray_visibility_is_shown(studio: Any) -> None:
         for thing in (studio.area(), studio.box(), studio.scene.camera)
     }
     assert shown["Area"].shown == kinds
-    assert shown["Box"].shown == kinds | {"visible_transmission", "visible_shadow", "is_shadow_catcher", "is_holdout"}
+    assert shown["Box"].shown == kinds | {
+        "visible_transmission",
+        "visible_shadow",
+        "is_shadow_catcher",
+        "is_holdout",
+        "use_camera_cull",
+        "use_distance_cull",
+    }
     assert shown["Camera"].shown == set()
 
 

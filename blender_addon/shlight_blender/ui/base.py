@@ -21,6 +21,7 @@ TABS = {
     "OBJECT": ("object", "object"),
     "MATERIAL": ("material", "material"),
     "LIGHT": ("data", "light"),
+    "CAMERA": ("data", "camera"),
 }
 # A function that draws, given a layout and the context.
 Draw = Callable[[Any, Any], None]

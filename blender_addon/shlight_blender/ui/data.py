@@ -11,7 +11,14 @@ from typing import Any
 
 import bpy
 
-from ..compat import PASSES, has_node_switch, shadow_switch, uses_nodes
+from ..compat import (
+    PASSES,
+    has_node_switch,
+    has_panorama_settings,
+    panorama_settings,
+    shadow_switch,
+    uses_nodes,
+)
 from .base import Draw, panel, with_names_aside
 
 # Types of objects that have a surface or give light.
@@ -57,9 +64,14 @@ def ray_visibility(layout: Any, context: Any) -> None:
     column = layout.column()
     for kind in ("camera", "diffuse", "glossy", *([] if is_lamp else ["transmission", "shadow"])):
         column.prop(shown, f"visible_{kind}", text=kind.title())
-    if not is_lamp:
-        layout.prop(shown, "is_shadow_catcher")
-        layout.prop(shown, "is_holdout")
+    if is_lamp:
+        return
+    layout.prop(shown, "is_shadow_catcher")
+    layout.prop(shown, "is_holdout")
+    if (cycles := getattr(shown, "cycles", None)) is not None:
+        culling = layout.column(heading="Culling", align=True)
+        for name in ("use_camera_cull", "use_distance_cull"):
+            culling.prop(cycles, name)
 
 
 @panel("SHLIGHT_LIGHT_PT_light", "Light", names_aside=False)
@@ -97,6 +109,32 @@ def _draw_shape(column: Any, light: Any) -> None:
         if light.type == "SPOT":
             column.prop(light, "spot_size", text="Beam Size")
             column.prop(light, "spot_blend", text="Blend", slider=True)
+
+
+# A type of panorama shows the properties whose names begin so.
+PANORAMAS = {
+    "FISHEYE_EQUIDISTANT": ("fisheye_fov",),
+    "FISHEYE_EQUISOLID": ("fisheye_lens", "fisheye_fov"),
+    "FISHEYE_LENS_POLYNOMIAL": ("fisheye_fov", "fisheye_polynomial"),
+    "EQUIRECTANGULAR": ("latitude", "longitude"),
+    "CENTRAL_CYLINDRICAL": ("central_cylindrical",),
+}
+
+
+@panel(
+    "SHLIGHT_CAMERA_PT_panorama",
+    "Panorama",
+    parent="DATA_PT_lens",
+    shown=lambda context: context.camera.type == "PANO" and has_panorama_settings(context.camera),
+)
+def panorama(layout: Any, context: Any) -> None:
+    """The settings of a panoramic camera, which Blender's own panel shows for Cycles alone."""
+    settings = panorama_settings(context.camera)
+    layout.prop(settings, "panorama_type")
+    column = layout.column(align=True)
+    for name in (each.identifier for each in settings.bl_rna.properties):
+        if name.startswith(PANORAMAS.get(settings.panorama_type, ())):
+            column.prop(settings, name)
 
 
 @panel("SHLIGHT_LIGHT_PT_nodes", "Nodes", names_aside=False)
@@ -159,6 +197,7 @@ CLASSES = (
     ray_visibility,
     lamp,
     lamp_nodes,
+    panorama,
     passes_data,
     passes_light,
     *(

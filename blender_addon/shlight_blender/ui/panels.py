@@ -24,8 +24,22 @@ EXCLUDED = {
 }
 # Parts of panels' names for features that shlight does not draw.
 NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")
-# Panels of EEVEE and Cycles that edit what every engine reads.
+# Panels of EEVEE and Cycles that edit what shlight reads too, in all versions of Blender.
 INCLUDED = {
+    "CYCLES_LIGHT_PT_preview",
+    "CYCLES_MATERIAL_PT_displacement",
+    "CYCLES_MATERIAL_PT_settings",
+    "CYCLES_MATERIAL_PT_settings_surface",
+    "CYCLES_MATERIAL_PT_volume",
+    "CYCLES_OBJECT_PT_motion_blur",
+    "CYCLES_RENDER_PT_filter",
+    "CYCLES_RENDER_PT_override",
+    "CYCLES_WORLD_PT_preview",
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
+    "EEVEE_WORLD_PT_mist",
+    "MATERIAL_PT_preview",
+    "OBJECT_PT_shadow_terminator",
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_surface",

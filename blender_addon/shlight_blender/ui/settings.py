@@ -154,5 +154,38 @@ def performance(layout: Any, context: Any) -> None:
     layout.prop(render, "use_persistent_data", text="Persistent Data")
 
 
+@panel(
+    "SHLIGHT_RENDER_PT_simplify_more",
+    "Textures and Culling",
+    parent="RENDER_PT_simplify",
+    closed=True,
+    shown=lambda context: hasattr(context.scene, "cycles"),
+)
+def simplify_more(layout: Any, context: Any) -> None:
+    """Shows the settings of Simplify that Cycles has beside subdivision."""
+    cycles = context.scene.cycles
+    layout.active = context.scene.render.use_simplify
+    layout.prop(cycles, "texture_limit_render", text="Texture Limit")
+    for kind in ("camera", "distance"):
+        row = layout.row(align=True)
+        row.prop(cycles, f"use_{kind}_cull", text=f"{kind.title()} Culling")
+        row.prop(cycles, f"{kind}_cull_margin", text="")
+
+
+@panel(
+    "SHLIGHT_RENDER_PT_subdivision",
+    "Subdivision",
+    closed=True,
+    shown=lambda context: hasattr(context.scene, "cycles"),
+)
+def subdivision(layout: Any, context: Any) -> None:
+    """Lengths of edges that adaptive subdivision ends at, which Blender's own panel shows for Cycles alone."""
+    cycles = context.scene.cycles
+    _props(layout.column(align=True), cycles, "dicing_rate", "preview_dicing_rate")
+    _props(layout, cycles, "offscreen_dicing_scale", "max_subdivisions")
+    if "feature_set" in cycles.bl_rna.properties:  # before Blender 5.0 it asks for experimental features
+        layout.prop(cycles, "feature_set")
+
+
 SAMPLING = (SHLIGHT_PT_presets, SHLIGHT_OT_add_preset, sampling, sampling_viewport)
-FURTHER = (light, light_advanced, shadows, film, motion_blur, performance)
+FURTHER = (light, light_advanced, shadows, subdivision, film, motion_blur, performance, simplify_more)
