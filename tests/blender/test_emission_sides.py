@@ -58,9 +58,9 @@ SHAPES = {
         ("square", "Backfacing", 5, 0, False, 1),
         ("square", "True Normal", 0, 5, False, -1),
         ("box", "Backfacing", 5, 2, True, 1),
-        ("ball", "Backfacing", 5, 0, False, 1),
+        pytest.param("ball", "Backfacing", 5, 0, False, 1, marks=pytest.mark.slow),
         ("half ball", "Backfacing", 0, 5, False, -1),
-        ("half ball", "Backfacing", 2, 5, True, 1),
+        pytest.param("half ball", "Backfacing", 2, 5, True, 1, marks=pytest.mark.slow),
     ],
 )
 def test_each_side_gives_its_own_light(

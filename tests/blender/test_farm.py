@@ -259,6 +259,7 @@ def test_survives_a_killed_worker_and_a_frame_that_fails(scene: Path, tmp_path: 
         assert (out / f"x_0{frame}.exr").read_bytes() == (alone / f"x_0{frame}.exr").read_bytes()
 
 
+@pytest.mark.slow
 def test_tiles_are_the_same_pixels_everywhere(scene: Path, tmp_path: Path) -> None:
     options = [scene, "--frames", 1, "--scale", 2, "--tile", 64]
     for workers in (0, 2):
@@ -281,6 +282,7 @@ def test_a_picture_for_display_is_the_one_that_blender_saves(scene: Path, tmp_pa
     np.testing.assert_array_equal(farm, blender)
 
 
+@pytest.mark.slow
 def test_views_are_eyes_and_cameras(scene: Path, tmp_path: Path) -> None:
     """The eyes of parallel stereoscopy see what cameras see that stand where they are."""
     scene.write_text(scene.read_text().replace("    return scene", STEREO))

@@ -137,13 +137,13 @@ def varying(studio: Any) -> Any:
 @pytest.mark.parametrize(
     ("light", "names", "samples"),
     [
-        pytest.param("point of light", None, 256, id="point of light"),
+        pytest.param("point of light", QUICK, 256, id="quick-point of light"),
         *(pytest.param(light, QUICK, 1024, id=f"quick-{light}") for light in ("area", "sphere")),
         pytest.param("sky", QUICK[:2], 1024, id="quick-sky"),
-        pytest.param("point of light", tuple(TOONS), 1024, id="toon-point of light"),
+        pytest.param("point of light", QUICK_TOONS, 1024, id="toon-quick-point of light"),
         pytest.param("area", QUICK_TOONS, 1024, id="toon-quick-area"),
-        *(pytest.param(light, None, 4096, marks=pytest.mark.slow, id=light) for light in LIGHTS[1:]),
-        *(pytest.param(light, tuple(TOONS), 1024, marks=pytest.mark.slow, id=f"toon-{light}") for light in LIGHTS[1:]),
+        *(pytest.param(light, None, 4096, marks=pytest.mark.slow, id=light) for light in LIGHTS),
+        *(pytest.param(light, tuple(TOONS), 1024, marks=pytest.mark.slow, id=f"toon-{light}") for light in LIGHTS),
     ],
 )
 def test_as_bright_as_in_cycles(studio: Any, light: str, names: tuple[str, ...] | None, samples: int) -> None:

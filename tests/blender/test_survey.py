@@ -91,6 +91,7 @@ def run(_addon: None, tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespa
     return SimpleNamespace(folder=folder, out=out, said=said.getvalue(), files=files)
 
 
+@pytest.mark.slow
 def test_every_file_has_a_record_and_a_line(run: SimpleNamespace) -> None:
     assert list(run.files) == [
         "agrees.blend",
@@ -107,6 +108,7 @@ def test_every_file_has_a_record_and_a_line(run: SimpleNamespace) -> None:
     assert "7 files: " in lines[9]
 
 
+@pytest.mark.slow
 def test_a_file_agrees_with_cycles(run: SimpleNamespace) -> None:
     record = run.files["agrees.blend"]
     assert abs(record["rel_mse"]) <= records.WITHIN
@@ -122,6 +124,7 @@ def test_a_file_agrees_with_cycles(run: SimpleNamespace) -> None:
     assert record["rel_mse_measured"] == pytest.approx(metrics.rel_mse(ours, theirs), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_what_a_file_lacks_is_added(run: SimpleNamespace) -> None:
     record = run.files["no_camera_no_light.blend"]
     assert record["added"] == ["camera", "lamps"]
@@ -133,6 +136,7 @@ def test_what_a_file_lacks_is_added(run: SimpleNamespace) -> None:
     assert box["mean_ratio"] == pytest.approx(1, abs=0.02)
 
 
+@pytest.mark.slow
 def test_what_befalls_a_file_is_its_line(run: SimpleNamespace) -> None:
     def problem(name: str) -> str:
         record = run.files[name]
@@ -147,12 +151,14 @@ def test_what_befalls_a_file_is_its_line(run: SimpleNamespace) -> None:
     assert run.files["faults/hang.blend"]["seconds"] < 2 * TIME_LIMIT
 
 
+@pytest.mark.slow
 def test_the_summary_counts(run: SimpleNamespace) -> None:
     counted = "6 without transmission, volume and subsurface: 2 within 0.001 (33.3%), 0 not, 4 failed"
     assert counted in run.said
     assert "1 with one of these: " in run.said
 
 
+@pytest.mark.slow
 def test_the_contact_sheet_shows_failures_first(run: SimpleNamespace) -> None:
     pytest.importorskip("matplotlib")
     from matplotlib.image import imread
@@ -163,6 +169,7 @@ def test_the_contact_sheet_shows_failures_first(run: SimpleNamespace) -> None:
     assert strip.shape[:2] == (48, 3 * 64)
 
 
+@pytest.mark.slow
 def test_resuming_does_what_is_left(run: SimpleNamespace, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def survey(*arguments: str) -> int:
         return main([str(run.folder), "--out", str(tmp_path), "--resume", *arguments])
@@ -182,6 +189,7 @@ def test_resuming_does_what_is_left(run: SimpleNamespace, tmp_path: Path, capsys
     assert survey() == 2
 
 
+@pytest.mark.slow
 def test_interrupting_keeps_what_is_done(run: SimpleNamespace, tmp_path: Path) -> None:
     for name in ("a", "hang"):
         os.link(run.folder / "agrees.blend", tmp_path / f"{name}.blend")

@@ -92,7 +92,7 @@ def anisotropic() -> Bsdf:
 
 
 @pytest.mark.parametrize(("cosine", "phi"), [(0.3, 0.7), (0.7, 2.0), (0.95, 4.0)])
-@pytest.mark.parametrize("which", ["isotropic", "anisotropic"])
+@pytest.mark.parametrize("which", ["isotropic", pytest.param("anisotropic", marks=pytest.mark.slow)])
 def test_a_function_is_reflected_within_twice_its_residual(
     which: str, cosine: float, phi: float, request: pytest.FixtureRequest
 ) -> None:
@@ -265,6 +265,7 @@ def test_merl(tmp_path: Path) -> None:
         assert math.sqrt(error) <= 0.02
 
 
+@pytest.mark.slow
 def test_a_metal_takes_cubature(tmp_path: Path) -> None:
     """Sixteen bands do not hold its peak; harmonics in the boost of its width, and cubature, do."""
     f = ashikhmin_shirley(3000, 3000, 0.9, 0.0)
@@ -440,7 +441,7 @@ def threads() -> Bsdf:
     return Bsdf.from_table(fabric()[..., 0], *angles, *angles)
 
 
-@pytest.mark.parametrize("which", ["anisotropic", "threads"])
+@pytest.mark.parametrize("which", [pytest.param("anisotropic", marks=pytest.mark.slow), "threads"])
 @pytest.mark.parametrize("wall", [False, True])
 def test_a_picture_around_the_scene_lights_it(which: str, wall: bool, request: pytest.FixtureRequest) -> None:
     bsdf = request.getfixturevalue(which)

@@ -69,7 +69,7 @@ def scattered(latitude: float, azimuth: float, elevation: float) -> Array:
     return np.asarray(spectrum @ atmospheres._to_xyz())
 
 
-@pytest.mark.parametrize(("latitude", "column"), [(1.2, 30), (0.3, 250)])
+@pytest.mark.parametrize(("latitude", "column"), [(1.2, 30), pytest.param(0.3, 250, marks=pytest.mark.slow)])
 def test_single_scattering_is_its_integral(latitude: float, column: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """To what 8 places towards the sun leave, along a ray of many steps; Cycles' 32 are up to 12 % too dark."""
     monkeypatch.setattr(atmospheres, "STEPS", 2048)

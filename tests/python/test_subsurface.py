@@ -50,7 +50,7 @@ def walked(albedo: float, thickness: float, g: float) -> tuple[float, float]:
     return back / 400_000, through / 400_000
 
 
-@pytest.mark.parametrize("g", [0.0, 0.6])
+@pytest.mark.parametrize("g", [0.0, pytest.param(0.6, marks=pytest.mark.slow)])
 def test_a_slab_reflects_and_transmits_as_random_walks_do(g: float) -> None:
     body = nodes.subsurface(ALBEDO, (1.0, 2.0, 0.5), anisotropy=g, diffuse_entry=True)
     numbers = [value.constant or 0.0 for value in body.lobes[0].below.numbers]  # type: ignore[union-attr]
