@@ -163,8 +163,8 @@ def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
 def rows(array: Floats, shape: tuple[int, ...], *core: int) -> Floats:
     """The array as contiguous rows of the broadcast shape; copied only if it really has to be spread."""
     full = (*shape, *core)
-    spread = array if array.shape == full else np.ascontiguousarray(np.broadcast_to(array, full))
-    return spread.reshape(-1, *core)
+    spread = array if array.shape == full else np.broadcast_to(array, full)
+    return np.ascontiguousarray(spread).reshape(-1, *core)
 
 
 def all_rows(arrays: Mapping[str, Floats], shape: tuple[int, ...]) -> list[Floats]:

@@ -68,6 +68,7 @@ def explained(function: Function) -> Function:
             text = _why(signature, given, named) or str(error)
         raise TypeError(text)
 
+    del call.__wrapped__  # whoever asks about the function shall not be led to the native one
     call.__signature__ = signature  # type: ignore[attr-defined]
     call.__doc__ = (function.__doc__ or "").partition("\n")[2].strip()
     return cast("Function", call)

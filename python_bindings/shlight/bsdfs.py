@@ -24,6 +24,12 @@ class Bsdfs:
     What takes them, shade_spheres and its like, broadcasts their leading axes with those of lights and views. They can
     be added to one another and to a Bsdf, and multiplied by a number or colours (..., 3). They are immutable. Colours
     are 0 … 1e10, float32.
+
+    >>> wood = shlight.Bsdfs.lambert([[0.4, 0.2, 0.1], [0.5, 0.3, 0.2]]) + shlight.Bsdfs.ggx([0.2, 0.6], 0.04)
+    >>> wood
+    Bsdfs(shape (2,), 3 lobes)
+    >>> shlight.shade_spheres([0, 0, 2], 0.5, wood, cos_theta_o=0.8).shape
+    (2, 3)
     """
 
     _lobes: _core.Bsdf  # of colour 1
@@ -49,7 +55,7 @@ class Bsdfs:
         color = _colors("f0", f0)
         lobes = _core.varying_ggx(ior)
         _, ones, _ = _parts(lobes)
-        alpha = np.maximum(width, _core.LEAST_ROUGHNESS).astype(np.float32) ** 2
+        alpha = np.square(np.maximum(width, _core.LEAST_ROUGHNESS).astype(np.float32))
         broadcast(roughness=width.shape, f0=color.shape[:-1])
         colors = np.stack([color, 1 - np.minimum(color, 1)][: len(ones)], axis=-2)
         return Bsdfs(lobes, colors, np.stack([alpha] * len(ones), axis=-1))

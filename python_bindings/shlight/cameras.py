@@ -22,6 +22,12 @@ def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) 
     Returns (..., 4, 4), camera to world for column vectors: the camera looks along its own -z, and its y axis lies in
     the plane of the line of sight and `up`, as in Blender. float32 where eye and target are, else float64.
     ValueError naming the row where eye and target are one point, and where `up` is 0 or parallel to the line of sight.
+
+    >>> shlight.look_at((0, -4, 0), (0, 0, 0))
+    array([[ 1.,  0.,  0.,  0.],
+           [ 0.,  0., -1., -4.],
+           [-0.,  1.,  0.,  0.],
+           [ 0.,  0.,  0.,  1.]])
     """
     arrays, shapes = checked_vectors(np.float64, eye=eye, target=target, up=up)
     for name, array in arrays.items():

@@ -67,6 +67,9 @@ def sh_basis(
     """The real spherical harmonics of all bands below `order` in given directions.
 
     directions: (..., 3), of any length > 0. Returns (..., order²).
+
+    >>> shlight.sh_basis([0, 0, 1], order=2).round(4)
+    array([0.2821, 0.    , 0.4886, 0.    ])
     """
     d = checked_array("directions", directions, wanted_type(dtype, directions), core_axes=1)
     check_last("directions", d, 3)
@@ -80,6 +83,10 @@ def evaluate(coefficients: ArrayLike, directions: ArrayLike, *, threads: int = 0
 
     coefficients: (..., order²); directions: (..., 3), of any length > 0; their leading axes broadcast.
     Returns (...).
+
+    >>> whole = shlight.cap_coefficients([0, 0, 1], np.pi, order=4, clip=False)  # the basis over all directions
+    >>> shlight.evaluate(whole, [[0, 0, 1], [1, 0, 0]]).round(6)
+    array([1., 1.])
     """
     dtype = given_type(coefficients, directions)
     c = checked_array("coefficients", coefficients, dtype, core_axes=1)
@@ -134,6 +141,12 @@ def sphere_coefficients(
 
     gradient: return also a CoefficientGradient, the exact derivatives by centre and radius, for orders 1 … 63. A sphere
     that touches the shading point has infinite ones by its half angle; they count as 0.
+
+    >>> light = shlight.sphere_coefficients([[0, 0, 2], [1, 0, 1]], 0.5, order=4)
+    >>> light.shape
+    (2, 16)
+    >>> light[:, 0].round(4)  # solid angle / √4π
+    array([0.0563, 0.1145])
     """
     wanted = checked_flag("gradient", gradient)
     if wanted and not is_own("exact", method):
@@ -171,6 +184,10 @@ def cap_coefficients(
 
     axes: (..., 3), of any length > 0; half_angles: (...), radians in (0, π].
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
+
+    >>> half_sky = shlight.cap_coefficients([0, 0, 1], np.pi / 2, order=2)
+    >>> half_sky.round(4)
+    array([1.7725, 0.    , 1.535 , 0.    ])
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("cap_coefficients", method, **options)
@@ -197,6 +214,11 @@ def polygon_coefficients(
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, any unit of length, in either winding: the region counts.
     A polygon without area or seen edge-on gives zeros. clip: keep only what lies above the horizon z ≥ 0.
     Returns (..., order²). ValueError for vertices that are not planar and for a shading point in the polygon.
+
+    >>> panel = [[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]  # a face of a cube around the point: a sixth of 4π
+    >>> light = shlight.polygon_coefficients(panel, order=4)
+    >>> float((light[0] * np.sqrt(4 * np.pi)).round(4))  # 2π/3
+    2.0944
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("polygon_coefficients", method, **options)
@@ -223,6 +245,10 @@ def disk_coefficients(
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²), right to 1e-10 of L_00 in float64 and 1e-5
     in float32, at contact, too. ValueError for dependent half axes and for a shading point in the ellipse.
     Stokes' theorem along the outline as elliptic functions: docs/theory.md, 5.
+
+    >>> disk = shlight.disk_coefficients([0, 0, 1], [1, 0, 0], [0, 1, 0], order=3)
+    >>> disk[[0, 2, 6]].round(4)  # all others are 0
+    array([0.5191, 0.7675, 0.7006])
     """
     axes = {"half_axes_u": half_axes_u, "half_axes_v": half_axes_v}
     return _result(_core.disk_coefficients, *_arguments(order, clip, threads, dtype, centers=centers, **axes), out)
@@ -239,6 +265,11 @@ def contract(light: ArrayLike, material: ArrayLike, *, threads: int = 0) -> Floa
     RGB is an axis like others, before the last: a coloured material has coefficients (..., 3, order²), for which light
     is light[..., None, :], and the result is (..., 3). The radiance of lights is a factor of it: multiply it by their
     RGB. Three lights that meet the three rows of a coloured material one by one give a UserWarning.
+
+    >>> light = shlight.sphere_coefficients([0.0, 0.0, 2.0], 1.0, order=8)
+    >>> matt = shlight.Bsdf.lambert(0.5).coefficients(cos_theta_o=0.8, order=8)
+    >>> float(np.round(shlight.contract(light, matt), 3))  # albedo · sin²σ, sinσ = 1/2
+    0.125
     """
     dtype = given_type(light, material)
     lights = checked_array("light", light, dtype, core_axes=1)

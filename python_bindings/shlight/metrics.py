@@ -24,7 +24,11 @@ __all__ = [
 
 
 def rel_mse(image: npt.ArrayLike, reference: npt.ArrayLike) -> float:
-    """Relative mean squared error: the mean of (x - r)² / (r² + 0.01 r̄²), r̄ the mean of the reference."""
+    """Relative mean squared error: the mean of (x - r)² / (r² + 0.01 r̄²), r̄ the mean of the reference.
+
+    >>> round(shlight.metrics.rel_mse(np.full((2, 2, 3), 1.1), np.ones((2, 2, 3))), 4)
+    0.0099
+    """
     x, r = _pair(image, reference)
     return float(np.mean((x - r) ** 2 / _scale2(r)))
 

@@ -26,6 +26,11 @@ def luminous(irradiance: ArrayLike) -> Any:
     Blender's glTF exporter counts alike.
 
     Returns () or (...): float32 of float32, else float64. ValueError naming the row of what is not finite.
+
+    >>> float(shlight.luminous(1.0))
+    683.0
+    >>> shlight.luminous([[1, 1, 1], [0, 0.5, 0]]).round(2)
+    array([683.  , 244.22])
     """
     dtype = given_type(irradiance)
     light = checked_array("irradiance", irradiance, dtype)

@@ -22,6 +22,14 @@ class Hits:
     """The surfaces that n rays meet, as Scene.intersect returns them; each array has a row of each ray.
 
     Rows of rays that meet nothing hold the distance inf, -1 as mesh, instance and triangle, and zeros otherwise.
+
+    >>> scene = shlight.Scene()
+    >>> floor = scene.add_mesh([[0, 0, 0], [2, 0, 0], [0, 2, 0]], [[0, 1, 2]])
+    >>> hits = scene.intersect([[0.5, 0.5, 1], [3, 3, 1]], (0, 0, -1))
+    >>> hits.distance
+    array([ 1., inf])
+    >>> hits.position[hits.valid]
+    array([[0.5, 0.5, 0. ]])
     """
 
     distance: Floats
@@ -64,6 +72,11 @@ def shading_frames(normals: ArrayLike, tangents: ArrayLike | None = None) -> Flo
     `frames @ v` takes a vector to the world, `np.swapaxes(frames, -1, -2) @ w` back. float32 if all arrays are,
     otherwise float64.
     Raises ValueError naming the argument and its row.
+
+    >>> shlight.shading_frames([0, 0, 2], tangents=[0, 1, 1])
+    array([[ 0., -1.,  0.],
+           [ 1.,  0.,  0.],
+           [ 0.,  0.,  1.]])
     """
     kind = given_type(normals, *([] if tangents is None else [tangents]))
     z = _units("normals", normals)

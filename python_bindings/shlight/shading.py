@@ -145,6 +145,11 @@ def shade_spheres(
     the tolerance of the radiance returned. Where a lamp at the horizon adds little, differences of that radiance err
     by up to 40 % of the derivative at the default tolerance, and by 0.3 % at 1e-5. Derivatives of mirrors are 0; method
     and order must then be "auto". With gradient "places" those by roughness are left out, which take most of the time.
+
+    >>> metal = shlight.Bsdf.ggx(0.3, (1.0, 0.8, 0.3))
+    >>> shlight.shade_spheres([[-0.8, 0, 1.0], [0, 0, 2]], 0.2, metal, cos_theta_o=0.8).round(3)
+    array([[0.475, 0.38 , 0.143],
+           [0.002, 0.002, 0.001]], dtype=float32)
     """
     options: dict[str, Any] = {"samples": samples, "seed": seed, "sampling": sampling}
     settings = (phi_o, order, tolerance, threads, method, return_effort, gradient)
@@ -213,6 +218,10 @@ def shade_polygons(
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
     or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
     gradient: a PolygonGradient, of the region within the outline; moved vertices need not stay in one plane.
+
+    >>> panel = [[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]
+    >>> shlight.shade_polygons(panel, shlight.Bsdf.lambert(0.8), cos_theta_o=0.5).round(3)
+    array([0.443, 0.443, 0.443], dtype=float32)
     """
     options: dict[str, Any] = {"samples": samples, "seed": seed, "sampling": sampling}
     settings = (phi_o, order, tolerance, threads, method, return_effort, gradient)
@@ -263,6 +272,9 @@ def shade_disks(
     What a lobe reflects is that of a polygon of as many sides as it takes to keep a coefficient within about 1e-4 of
     L_00, or the tolerance if that is less (docs/theory.md, 5.5).
     method: "auto" only; the others know no disks.
+
+    >>> shlight.shade_disks([0, 0, 1], [1, 0, 0], [0, 1, 0], shlight.Bsdf.lambert(0.8), cos_theta_o=0.5).round(3)
+    array([0.4, 0.4, 0.4], dtype=float32)
     """
     checked_name("method", method, ("auto",))
     lights = {"centers": centers, "half_axes_u": half_axes_u, "half_axes_v": half_axes_v}

@@ -417,7 +417,11 @@ constexpr const char* kDoc =
     R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
 
 Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable. Colours are 0 … 1e10.
-Multiplied by an expression of shlight.nodes, such as a picture, one is a Shader, which Scene.add_mesh takes too.)";
+Multiplied by an expression of shlight.nodes, such as a picture, one is a Shader, which Scene.add_mesh takes too.
+
+>>> varnish = shlight.Bsdf.lambert((0.4, 0.2, 0.1)) + shlight.Bsdf.ggx(0.2, 0.04)
+>>> varnish.evaluate((0, 0, 1), (0.6, 0, 0.8)).round(4)
+array([0.1279, 0.0643, 0.0324]))";
 
 /// The first line is the signature, as pybind11 writes those of other functions: that of shlight.nodes.principled.
 constexpr const char* kPrincipledDoc =

@@ -77,7 +77,16 @@ return_report: return (result, report), whose report the result has, too.
 
 Returns a RenderResult, an array (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share
 of what is not empty: a surface, or an environment that the camera sees. Its .passes, .groups and .report hold the rest.
-Raises ValueError naming the argument, RenderCancelled.)";
+Raises ValueError naming the argument, RenderCancelled.
+
+>>> scene = shlight.Scene()
+>>> floor = scene.add_mesh([[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], [[0, 1, 2], [0, 2, 3]])
+>>> lamp = scene.add_sphere_light((0, 0, 1), 0.2, radiance=10)
+>>> scene.set_camera(shlight.look_at((0, -3, 2), (0, 0, 0)), fov_x=0.8)
+>>> result = shlight.render(scene, 32, 24, passes=["depth"])
+>>> result.shape, list(result.passes)
+((24, 32, 4), ['depth'])
+>>> result.save("floor.png"))";
 
 constexpr const char* kKeptLightDoc = R"(Light that bounces, kept from one render to the next.
 

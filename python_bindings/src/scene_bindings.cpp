@@ -22,7 +22,14 @@ constexpr const char* kSceneDoc = R"(Meshes, curves, point clouds, lights and a 
 
 Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
 What render() builds of a mesh is kept as long as the mesh stays as it is.
-A copy, deep or not, and the Scene that it was made of do not change each other.)";
+A copy, deep or not, and the Scene that it was made of do not change each other.
+
+>>> scene = shlight.Scene()
+>>> floor = scene.add_mesh([[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], [[0, 1, 2], [0, 2, 3]])
+>>> lamp = scene.add_sphere_light((0, 0, 1), 0.2, radiance=10)
+>>> scene.irradiance([[0, 0, 0], [1, 0, 0]], (0, 0, 1))[:, 0].round(3)  # π L sin²σ cosθ
+array([1.257, 0.444])
+>>> lamp.radiance = (5, 5, 5))";
 
 constexpr const char* kAddMeshDoc = R"(Add a triangle mesh. Surfaces are two-sided.
 

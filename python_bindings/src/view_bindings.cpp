@@ -38,7 +38,17 @@ constexpr const char* kViewTypeDoc = R"(A picture of a Scene that is lit again a
 
 It belongs to that scene alone, of which it sees all changes but that of the camera. It holds some 600 bytes for each
 camera ray, and for each light 24 for each pixel, 12 without shadows; where there are many lights, up to 32 and 32 of
-no size take as much as one.)";
+no size take as much as one.
+
+>>> scene = shlight.Scene()
+>>> floor = scene.add_mesh([[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], [[0, 1, 2], [0, 2, 3]])
+>>> lamp = scene.add_sphere_light((0, 0, 1), 0.2, radiance=10)
+>>> scene.set_camera(shlight.look_at((0, -3, 2), (0, 0, 0)), fov_x=0.8)
+>>> view = scene.view(32, 24)
+>>> bright = view.relight()
+>>> lamp.radiance = 5
+>>> float((view.relight()[12, 16, 0] / bright[12, 16, 0]).round(3))
+0.5)";
 
 constexpr const char* kRelightDoc = R"(Make the picture of the scene as it is now.
 

@@ -7,6 +7,7 @@ import importlib.util
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,11 @@ import pytest
 import shlight
 from shlight import images
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "examples"
+sys.path.append(str(ROOT / "docs" / "tasks"))
+
+import build  # noqa: E402
 
 
 def test_render_in_blender_writes_its_picture_and_ends(tmp_path: Path) -> None:
@@ -59,3 +64,11 @@ def test_textured_obj_shows_its_picture(tmp_path: Path) -> None:
     left, right = (picture[200, column, :3].astype(int) for column in (120, 280))
     assert left[0] > 2 * left[2]
     assert right[2] > 2 * right[0]
+
+
+def test_the_code_of_the_page_start_renders(studio: Any) -> None:
+    studio.camera()
+    studio.resolution(16, 16)
+    studio.scene.render.filepath = str(studio.folder / "a.exr")
+    build.built(ROOT / "docs" / "start.md")
+    assert images.read_exr(studio.folder / "a.exr").shape[:2] == (16, 16)

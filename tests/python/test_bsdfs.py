@@ -81,6 +81,16 @@ def test_leading_axes_broadcast_and_a_plain_mirror_is_as_sharp_as_a_lobe_can_be(
     np.testing.assert_array_equal(*sharp)
 
 
+@pytest.mark.parametrize("roughness", [0.5, [0.5, 0.5]])
+def test_a_sum_may_begin_with_either_lobe(roughness: Any) -> None:
+    shiny, matt = Bsdfs.ggx(roughness, 0.04), Bsdfs.lambert([[0.4, 0.2, 0.1], [0.5, 0.3, 0.2]])
+    one_by_one = [Bsdf.ggx(0.5, 0.04) + Bsdf.lambert(color) for color in ((0.4, 0.2, 0.1), (0.5, 0.3, 0.2))]
+    expected = [shlight.shade_spheres(CENTERS[0], RADII[0], own, 0.8) for own in one_by_one]
+    for varying in (shiny + matt, matt + shiny):
+        found = shlight.shade_spheres(CENTERS[0], RADII[0], varying, 0.8)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=4 * shlight.DEFAULT_TOLERANCE)
+
+
 def test_sums_and_copies_reflect_the_same() -> None:
     varying = sum([Bsdfs.ggx(ROUGHNESS, F0), Bsdf.lambert(0.5)])
     assert repr(varying) == f"Bsdfs(shape ({COUNT},), 3 lobes)"

@@ -12,7 +12,8 @@ import pytest
 
 import shlight
 
-TASKS = Path(__file__).parents[2] / "docs" / "tasks"
+ROOT = Path(__file__).parents[2]
+TASKS = ROOT / "docs" / "tasks"
 sys.path.insert(0, str(TASKS))
 
 import build  # noqa: E402
@@ -40,3 +41,9 @@ def test_a_page_is_as_its_code_has_it(page: Path, tmp_path: Path, monkeypatch: p
     for picture in PICTURE.findall(written):
         assert Path(picture).is_file()
         assert (TASKS / picture).is_file()
+
+
+def test_the_code_of_the_first_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    build.built(ROOT / "README.md")
+    assert shlight.images.read_texture("floor.png").mean() > 10

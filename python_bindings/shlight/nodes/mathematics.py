@@ -195,7 +195,11 @@ def map_range(
     steps: Number = 4.0,
     clamped: bool = True,
 ) -> Value:
-    """A number of one range in another; interpolation: "linear", "stepped", "smoothstep" or "smootherstep"."""
+    """A number of one range in another; interpolation: "linear", "stepped", "smoothstep" or "smootherstep".
+
+    >>> worn = nodes.map_range(nodes.noise(scale=4).x, 0.4, 0.6, 0.1, 0.5)  # roughness in spots
+    >>> steel = nodes.glossy((0.6, 0.6, 0.6), worn)
+    """
     x, a, b, c, d = (number(n) for n in (value, from_low, from_high, to_low, to_high))
     share = (x - a) / (b - a)
     if interpolation == "stepped":

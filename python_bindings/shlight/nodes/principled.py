@@ -390,6 +390,9 @@ def principled(
     Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
     its normal; tangent: a world vector, needed where `anisotropic` is not 0. Raises ValueError naming an argument that
     is not finite.
+
+    >>> paint = nodes.principled((0.6, 0.05, 0.02), roughness=0.4, coat_weight=1.0)
+    >>> ball = shlight.Scene().add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], bsdf=paint)
     """
     base = Color(*(maximum(component, 0.0) for component in color(base_color, "base_color")))
     f0_of_metal = clamped(base)

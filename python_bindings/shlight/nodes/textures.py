@@ -92,6 +92,10 @@ def image(
     closed: the picture goes around something, so that u jumps by 1 at a seam; the footprint there goes the short way.
     filtered: False for the place alone, where the picture is smooth and the coordinates are not.
     Raises ValueError naming the argument.
+
+    >>> checks = np.array([[40, 220], [220, 40]], np.uint8)
+    >>> color = nodes.image(checks, nodes.position() * 0.5, encoding="srgb", interpolation="closest")
+    >>> shiny = shlight.Bsdf.principled(color, roughness=0.3)
     """
     filtering = INTERPOLATIONS.index(checked_name("interpolation", interpolation, INTERPOLATIONS))
     beyond = EXTENSIONS.index(checked_name("extension", extension, EXTENSIONS))
