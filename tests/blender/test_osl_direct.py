@@ -8,29 +8,26 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import shlight
 from shlight.images import read_layers
 from shlight.metrics import mean_ratio, rel_mse
 from shlight_blender import compat
-from shlight_blender.osl import materials, script
+from shlight_blender.osl import script
 
-Array = NDArray[np.float64]
 EYE = np.array([3.0, -6.0, 4.0])
-PLACE, RADIUS, POWER, TINT = (-0.8, 0.6, 1.2), 0.3, 150.0, np.array([1.0, 0.8, 0.5])
+PLACE, POWER, TINT = (-0.8, 0.6, 1.2), 150.0, np.array([1.0, 0.8, 0.5])
 COLOR = (0.7, 0.5, 0.9)
 
 
 def stage(studio: Any, material: Any, place: Any = PLACE, **lamp: Any) -> Any:
-    """A floor and a ball under a lamp, which the horizon of many places cuts; the lamp's light is in their material."""
+    """A floor and a ball under a lamp, whose light is in their material."""
     scene = studio.scene
     scene.render.engine = "CYCLES"
-    scene.render.resolution_x, scene.render.resolution_y = 80, 60
     studio.plane(material=material)
     studio.ball(0.7, material, location=(0.6, 0, 0.7))
     studio.camera(EYE)
-    given = {"shadow_soft_size": RADIUS, "color": TINT, "use_soft_falloff": False, "visible_camera": False, **lamp}
+    given = {"shadow_soft_size": 0.3, "color": TINT, "use_soft_falloff": False, "visible_camera": False, **lamp}
     made = studio.lamp("POINT", POWER, place, **given)
     for name in ("position", "normal", "emit"):
         setattr(scene.view_layers[0], f"use_pass_{name}", True)
@@ -47,45 +44,40 @@ def operate(name: str) -> None:
     assert getattr(bpy.ops.shlight, name)() == {"FINISHED"}
 
 
-def layers(studio: Any) -> dict[str, Array]:
-    """Passes of one sample, each (pixels, channels), where something was hit."""
-    passes = read_layers(studio.write("CYCLES"))
-    hit = np.linalg.norm(passes["normal"], axis=-1) > 0.5
-    return {name: passes[name][hit].astype(np.float64) for name in ("combined", "position", "normal", "emission")}
+def picture(studio: Any) -> dict[str, Any]:
+    """Cycles' passes."""
+    return {name.lower(): values for name, values in read_layers(studio.write("CYCLES")).items()}
 
 
-def reflected(bsdf: Any, passes: dict[str, Array], place: Any, radius: float) -> tuple[Array, Array]:
-    """What the core reflects of a lamp of radiance 1 at order 8, and where it is to be compared: the normal faces us."""
-    up = passes["normal"] / np.linalg.norm(passes["normal"], axis=-1, keepdims=True)
-    view = EYE - passes["position"]
-    view /= np.linalg.norm(view, axis=-1, keepdims=True)
+def error_of(studio: Any, lamp: Any, bsdf: Any) -> float:
+    """How far one sample is from what the core reflects at order 8, relative to the largest of the picture."""
+    place, radius = np.array(lamp.location), lamp.data.shadow_soft_size
+    passes = picture(studio)
+    towards = place - passes["position"].astype(np.float64)
+    lit = (np.linalg.norm(passes["normal"], axis=-1) > 0.5) & (np.linalg.norm(towards, axis=-1) > radius)
+    towards, at, up = towards[lit], passes["position"][lit].astype(np.float64), passes["normal"][lit]
+    view, up = (v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (EYE - at, up.astype(np.float64)))
     seen = np.einsum("ij,ij->i", up, view)
     x = view - seen[:, None] * up
     x /= np.linalg.norm(x, axis=-1, keepdims=True)
-    frame = np.stack([x, np.cross(up, x), up], axis=1)
-    centers = np.einsum("ijk,ik->ij", frame, np.asarray(place) - passes["position"])
+    centers = np.einsum("ijk,ik->ij", np.stack([x, np.cross(up, x), up], axis=1), towards)
     radiance = shlight.shade_spheres(centers, radius, bsdf, np.clip(seen, 0.0, 1.0), order=8)
-    return np.asarray(radiance, np.float64), seen > 0.05
+    radiance = radiance * lamp.data.energy * TINT / (4.0 * np.pi**2 * radius**2)
+    error = float(np.abs(passes["emission"][lit] - radiance).max() / radiance.max())
+    print(f"{error:.1e} of {radiance.max():.3f}; {np.mean(np.abs(centers[:, 2]) < radius):.0%} cut")
+    return error
 
 
-SHADERS: dict[str, tuple[str, dict[str, Any]]] = {
-    "lambert": ("ShaderNodeBsdfDiffuse", {}),
-    **{f"ggx {r}": ("ShaderNodeBsdfGlossy", {"Roughness": r, "distribution": "GGX"}) for r in (0.3, 0.45, 0.6, 1.0)},
-}
-
-
-@pytest.mark.parametrize("name", SHADERS)
-def test_one_sample_is_the_core(studio: Any, name: str) -> None:
-    kind, inputs = SHADERS[name]
-    stage(studio, studio.material(kind, Color=COLOR, **inputs))
-    passes = layers(studio)
-    rough = inputs.get("Roughness")
-    bsdf = shlight.Bsdf.lambert(COLOR) if rough is None else shlight.Bsdf.ggx(rough, 1.0) * COLOR
-    radiance, compared = reflected(bsdf, passes, PLACE, RADIUS)
-    radiance *= POWER * TINT / (4.0 * np.pi**2 * RADIUS**2)
-    error = np.abs(passes["emission"] - radiance)[compared].max() / radiance.max()
-    print(f"{name}: {error:.2e} of {radiance.max():.3f} at {compared.sum()} places")
-    assert error <= 1e-4
+@pytest.mark.parametrize(("height", "radius"), [(1.2, 0.3), (0.3, 0.35)])
+@pytest.mark.parametrize("roughness", [None, 0.3, 0.45, 0.6, 1.0])
+def test_one_sample_is_the_core(studio: Any, roughness: float | None, height: float, radius: float) -> None:
+    """The horizon cuts the low lamp all over the floor."""
+    made, bsdf = studio.material(Color=COLOR), shlight.Bsdf.lambert(COLOR)
+    if roughness is not None:
+        made = studio.material("ShaderNodeBsdfGlossy", Color=COLOR, Roughness=roughness, distribution="GGX")
+        bsdf = shlight.Bsdf.ggx(roughness, 1.0) * COLOR
+    lamp = stage(studio, made, (*PLACE[:2], height), shadow_soft_size=radius)
+    assert error_of(studio, lamp, bsdf) <= 1e-4
 
 
 def textured(studio: Any) -> Any:
@@ -111,11 +103,13 @@ def textured(studio: Any) -> Any:
 @pytest.mark.parametrize("disk", [False, True])
 def test_it_is_the_light_that_cycles_samples(studio: Any, disk: bool) -> None:
     stage(studio, textured(studio), use_soft_falloff=disk, use_shadow=False)
-    studio.scene.cycles.samples = 256
-    emitted = read_layers(studio.write("CYCLES"))["emission"]
+    studio.resolution(40, 30)
+    studio.scene.cycles.samples = 128
+    emitted = picture(studio)["emission"]
     operate("osl_remove")
-    studio.scene.cycles.shading_system = False
-    sampled = read_layers(studio.write("CYCLES"))["combined"][..., :3]
+    # Open Shading Language in Cycles darkens the sum of two shaders by 2 %.
+    studio.scene.cycles.shading_system, studio.scene.cycles.samples = False, 512
+    sampled = picture(studio)["combined"][..., :3]
     print(f"mean {mean_ratio(emitted, sampled) - 1:+.2%}, relMSE {rel_mse(emitted, sampled):.1e}")
     assert abs(mean_ratio(emitted, sampled) - 1) <= 5e-3
     assert rel_mse(emitted, sampled) <= 5e-3
@@ -124,9 +118,12 @@ def test_it_is_the_light_that_cycles_samples(studio: Any, disk: bool) -> None:
 def tree_of(material: Any) -> list[Any]:
     """What a tree of nodes is made of."""
     tree = material.node_tree
-    nodes = [(n.name, n.bl_idname, tuple(n.location), [str(getattr(i, "default_value", 0)) for i in n.inputs]) for n in tree.nodes]
-    links = {(l.from_node.name, l.from_socket.identifier, l.to_node.name, l.to_socket.identifier) for l in tree.links}
-    return [nodes, links, tree.animation_data, material.cycles.emission_sampling, sorted(material.keys())]
+    made: list[Any] = [tree.animation_data, material.cycles.emission_sampling, list(material.keys())]
+    for node in tree.nodes:
+        values = [str(getattr(socket, "default_value", 0)) for socket in node.inputs]
+        made.append((node.name, node.bl_idname, tuple(node.location), values))
+    made += sorted(f"{each.from_socket.path_from_id()} {each.to_socket.path_from_id()}" for each in tree.links)
+    return made
 
 
 def test_removing_leaves_what_was_there(studio: Any) -> None:
@@ -134,22 +131,24 @@ def test_removing_leaves_what_was_there(studio: Any) -> None:
     before = tree_of(made)
     lamp = stage(studio, made)
     groups = [node for node in made.node_tree.nodes if node.type == "GROUP"]
-    assert len(groups) == 2 and lamp.light_linking.receiver_collection is not None
+    assert len(groups) == 2
+    assert lamp.light_linking.receiver_collection is not None
     operate("osl_insert")
     assert [node for node in made.node_tree.nodes if node.type == "GROUP"] == groups
     operate("osl_remove")
     assert tree_of(made) == before
     assert lamp.light_linking.receiver_collection is None
-    assert not bpy.data.collections and not bpy.data.node_groups
+    assert not [*bpy.data.collections, *bpy.data.node_groups]
 
 
 def test_a_moved_lamp_moves_its_light(studio: Any) -> None:
     lamp = stage(studio, studio.material(Color=COLOR))
-    lamp.location, lamp.data.energy, lamp.data.shadow_soft_size = (1.0, 1.0, 3.0), 300.0, 0.6
-    passes = layers(studio)
-    radiance, compared = reflected(shlight.Bsdf.lambert(COLOR), passes, (1.0, 1.0, 3.0), 0.6)
-    radiance *= 300.0 * TINT / (4.0 * np.pi**2 * 0.6**2)
-    assert np.abs(passes["emission"] - radiance)[compared].max() <= 1e-4 * radiance.max()
+    lamp.location, lamp.data.energy, lamp.data.shadow_soft_size = (1.0, 1.0, 2.0), 300.0, 0.6
+    assert error_of(studio, lamp, shlight.Bsdf.lambert(COLOR)) <= 1e-4
+    # A floor alone has no light but that: the lamp does not light it once more.
+    bpy.data.objects.remove(studio.scene.objects["Ball"])
+    passes = picture(studio)
+    assert np.abs(passes["combined"][..., :3] - passes["emission"]).max() <= 1e-6 * passes["emission"].max()
 
 
 def test_what_is_not_supported_is_named(studio: Any, capfd: Any, monkeypatch: Any) -> None:

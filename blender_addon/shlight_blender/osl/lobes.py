@@ -22,7 +22,8 @@ FIRST_WIDTH = np.log(LEAST_ALPHA + ALPHA_OFFSET)
 WIDTH_STEP = (np.log(1.0 + ALPHA_OFFSET) - FIRST_WIDTH) / (WIDTHS - 1)
 VIEW_STEP = np.arccosh(1.0 / LEAST_COSINE) / (VIEWS - 1)
 RIDGE = 1e-7
-POINTS = 48  # heights, and azimuths over half a turn
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)  # of heights
+AZIMUTHS = np.pi * (np.arange(48) + 0.5) / 48  # over half a turn
 
 Array = NDArray[np.float64]
 
@@ -64,12 +65,10 @@ def ggx_terms(alpha: float, cosine: float) -> list[float]:
     turn = np.array([sine, gamma * cosine]) / np.hypot(sine, gamma * cosine)
     horizon = -speed * turn[1]
     # Directions u above the horizon, and what they are before the boost (34).
-    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-    height = horizon + (1.0 - horizon) * 0.5 * (nodes + 1.0)
-    weights = (1.0 - horizon) * np.pi * weights
-    azimuth = np.pi * (np.arange(POINTS) + 0.5) / POINTS
+    height = horizon + (1.0 - horizon) * 0.5 * (NODES + 1.0)
+    weights = (1.0 - horizon) * np.pi * WEIGHTS
     width = np.sqrt((1.0 - height) * (1.0 + height))
-    x, y = np.multiply.outer(width, np.cos(azimuth)), np.multiply.outer(width, np.sin(azimuth))
+    x, y = np.multiply.outer(width, np.cos(AZIMUTHS)), np.multiply.outer(width, np.sin(AZIMUTHS))
     z = height[:, None]
     above = 0.5 * ((x - turn[0]) ** 2 + y**2 + (z + turn[1]) ** 2)
     weight = rest + speed * above
@@ -81,7 +80,7 @@ def ggx_terms(alpha: float, cosine: float) -> list[float]:
 
     terms = np.empty(ORDER * (ORDER + 1) // 2)
     for m, rows in enumerate(_legendre(height, width)):
-        wave = (density * np.cos(m * azimuth)).mean(axis=1) * (np.sqrt(2.0) if m else 1.0)
+        wave = (density * np.cos(m * AZIMUTHS)).mean(axis=1) * (np.sqrt(2.0) if m else 1.0)
         gram = (rows * weights) @ rows.T + RIDGE * np.eye(len(rows))
         bands = np.arange(m, ORDER)
         terms[bands * (bands + 1) // 2 + m] = np.linalg.solve(gram, rows @ (weights * wave))

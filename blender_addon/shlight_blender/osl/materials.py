@@ -181,13 +181,9 @@ def link_light(lamp: Any) -> list[str]:
         owned = bpy.data.collections.new(f"shlight {name}")
         owned[MARK] = 1
         lamp.light_linking.receiver_collection = owned
-    for shown, member in zip(lit, _members(owned, lit), strict=True):
-        member.light_linking.link_state = "EXCLUDE"
+        for shown in lit:
+            owned.objects.link(shown)
+        for member in owned.collection_objects:
+            member.light_linking.link_state = "EXCLUDE"
     others = [name_of(shown) for shown in lit if not all(is_lit_by(s.material, lamp) for s in shown.material_slots)]
     return [f"{name} does not light the other materials of {other}" for other in others]
-
-
-def _members(owned: Any, lit: list[Any]) -> list[Any]:
-    for shown in lit:
-        owned.objects.link(shown)
-    return list(owned.collection_objects) if lit else []
