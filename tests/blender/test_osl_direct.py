@@ -116,7 +116,7 @@ def test_it_is_the_light_that_cycles_samples(studio: Any, disk: bool) -> None:
 
 
 def tree_of(material: Any) -> list[Any]:
-    """What a tree of nodes is made of."""
+    """All that a tree of nodes has."""
     tree = material.node_tree
     made: list[Any] = [tree.animation_data, material.cycles.emission_sampling, list(material.keys())]
     for node in tree.nodes:
