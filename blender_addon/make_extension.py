@@ -38,7 +38,7 @@ def make_extension(wheels: Path, dist: Path) -> Path:
     with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:
         _write(archive, "blender_manifest.toml", manifest.encode())
         _write(archive, "LICENSE", LICENSE.read_bytes())
-        for source in sorted(ADDON.rglob("*.py")):
+        for source in sorted(path for path in ADDON.rglob("*") if path.suffix in (".py", ".osl")):
             _write(archive, source.relative_to(ADDON).as_posix(), source.read_bytes())
         for name in names:
             _write(archive, f"wheels/{name}", (wheels / name).read_bytes(), zipfile.ZIP_STORED)

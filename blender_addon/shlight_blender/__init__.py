@@ -35,6 +35,7 @@ def register() -> None:
         return
     from . import engine, properties, running
     from .compare import registration
+    from .osl import operators
     from .ui import panels
 
     if properties.are_registered():
@@ -49,6 +50,7 @@ def register() -> None:
     engine.register()
     panels.register()
     registration.register()
+    operators.register()
     if not bpy.app.binary_path:
         # Python with the module bpy hangs or crashes at its end while an add-on's classes are registered.
         atexit.register(unregister)
@@ -63,6 +65,7 @@ def unregister() -> None:
         return
     from . import engine, properties
     from .compare import registration
+    from .osl import operators
     from .ui import panels
 
     if not properties.are_registered():
@@ -70,6 +73,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     engine.unregister()
     registration.unregister()
+    operators.unregister()
     panels.unregister()
     preferences.unregister()
     properties.unregister()
