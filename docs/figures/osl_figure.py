@@ -70,7 +70,7 @@ def main() -> None:
         for each in studio.scene.objects:
             each.select_set(True)
         bpy.ops.shlight.osl_insert()
-        # What emits is seen by rays that end, too: lamps take a bounce more for the same light.
+        # Rays that end still see what emits, so that lamps need a bounce more for the same light.
         emitted = rendered(studio, 1, 0)
         seconds["in materials"] = [emitted["seconds"], rendered(studio, SAMPLES, 0)["seconds"]]
     for name, (one, many) in seconds.items():
