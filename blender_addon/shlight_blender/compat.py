@@ -140,8 +140,18 @@ REC709 = "Linear Rec.709"
 
 def lets_light_through(material: Any) -> bool:
     """Whether shadow rays pass a material where it is transparent; otherwise only camera rays do."""
-    owner = material if hasattr(material, "use_transparent_shadow") else getattr(material, "cycles", None)
-    return bool(getattr(owner, "use_transparent_shadow", True))
+    return bool(getattr(material_owner(material, "use_transparent_shadow"), "use_transparent_shadow", True))
+
+
+def material_owner(material: Any, name: str) -> Any:
+    """The material or its settings of Cycles, whichever has a setting; None if neither has it."""
+    owners = (material, getattr(material, "cycles", None))
+    return next((owner for owner in owners if hasattr(owner, name)), None)
+
+
+def has_own_terminator(shown: Any) -> bool:
+    """Whether an object has Shadow Terminator offsets that are not Cycles' own."""
+    return hasattr(shown, "shadow_terminator_geometry_offset")
 
 
 def terminator_offsets(shown: Any) -> tuple[float, float]:
@@ -149,7 +159,7 @@ def terminator_offsets(shown: Any) -> tuple[float, float]:
 
     Cycles reads the object's own where it has them (since Blender 4.2), else its add-on's; 0.1 and 0 by default.
     """
-    if hasattr(shown, "shadow_terminator_geometry_offset"):
+    if has_own_terminator(shown):
         return shown.shadow_terminator_geometry_offset, shown.shadow_terminator_shading_offset
     own = getattr(shown, "cycles", None)
     return getattr(own, "shadow_terminator_geometry_offset", 0.1), getattr(own, "shadow_terminator_offset", 0.0)
@@ -307,8 +317,7 @@ def displacement_method(material: Any) -> str:
 
     Before Blender 4.1 the setting is that of Cycles' add-on.
     """
-    owner = material if hasattr(material, "displacement_method") else getattr(material, "cycles", None)
-    return str(getattr(owner, "displacement_method", "BUMP"))
+    return str(getattr(material_owner(material, "displacement_method"), "displacement_method", "BUMP"))
 
 
 class Dicing(NamedTuple):

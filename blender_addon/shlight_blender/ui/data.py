@@ -14,7 +14,9 @@ import bpy
 from ..compat import (
     PASSES,
     has_node_switch,
+    has_own_terminator,
     has_panorama_settings,
+    material_owner,
     panorama_settings,
     shadow_switch,
     uses_nodes,
@@ -37,6 +39,35 @@ OTHER = ("emit", "environment")
 def world_picture(layout: Any, context: Any) -> None:
     """Settings of the picture that a world of nodes becomes."""
     layout.prop(context.scene.shlight, "world_width")
+
+
+def _draw_socket(layout: Any, owner: Any, name: str) -> None:
+    """The nodes of an input of the output of something that has nodes."""
+    layout.use_property_split = True
+    output = owner.node_tree.get_output_node("CYCLES") if uses_nodes(owner) else None
+    if output is None:
+        layout.label(text="No output node")
+    else:
+        layout.template_node_view(owner.node_tree, output, output.inputs[name])
+
+
+def _socket_panel(name: str) -> Any:
+    draw: Draw = lambda layout, context: _draw_socket(layout, context.material, name)  # noqa: E731
+    return panel(f"SHLIGHT_MATERIAL_PT_{name.lower()}", name, closed=True, names_aside=False)(draw)
+
+
+def _preview_panel(owner: str) -> Any:
+    draw: Draw = lambda layout, context: layout.template_preview(getattr(context, owner))  # noqa: E731
+    return panel(f"SHLIGHT_{owner.upper()}_PT_preview", "Preview", closed=True, names_aside=False)(draw)
+
+
+@panel("SHLIGHT_MATERIAL_PT_settings", "Settings", closed=True)
+def material_settings(layout: Any, context: Any) -> None:
+    """The settings of a material beside its nodes."""
+    layout.prop(context.material, "pass_index")
+    for name in ("displacement_method", "use_transparent_shadow"):
+        if (owner := material_owner(context.material, name)) is not None:
+            layout.prop(owner, name)
 
 
 @panel("SHLIGHT_MATERIAL_PT_measured", "Measured BRDF", closed=True)
@@ -74,6 +105,35 @@ def ray_visibility(layout: Any, context: Any) -> None:
             culling.prop(cycles, name)
 
 
+def _has_surface(context: Any) -> bool:
+    return context.object.type in DRAWN_TYPES - {"LIGHT"} and hasattr(context.object, "cycles")
+
+
+@panel(
+    "SHLIGHT_OBJECT_PT_motion_blur",
+    "Motion Blur",
+    closed=True,
+    shown=_has_surface,
+    draw_header=lambda layout, context: layout.prop(context.object.cycles, "use_motion_blur", text=""),
+)
+def object_motion_blur(layout: Any, context: Any) -> None:
+    """Whether an object, and its shape, move while the shutter is open."""
+    layout.active = context.scene.render.use_motion_blur and context.object.cycles.use_motion_blur
+    layout.prop(context.object.cycles, "use_deform_motion", text="Deformation")
+
+
+@panel(
+    "SHLIGHT_OBJECT_PT_shadow_terminator",
+    "Shadow Terminator",
+    closed=True,
+    shown=lambda context: _has_surface(context) and not has_own_terminator(context.object),
+)
+def shadow_terminator(layout: Any, context: Any) -> None:
+    """The offsets of shadows, which later versions of Blender show for all engines."""
+    for name in ("shadow_terminator_offset", "shadow_terminator_geometry_offset"):
+        layout.prop(context.object.cycles, name)
+
+
 @panel("SHLIGHT_LIGHT_PT_light", "Light", names_aside=False)
 def lamp(layout: Any, context: Any) -> None:
     """Colour, power and shape of a lamp."""
@@ -102,6 +162,8 @@ def _draw_shape(column: Any, light: Any) -> None:
         if not one_size:
             column.prop(light, "size_y", text="Y")
         column.prop(light, "spread")
+        if hasattr(light, "cycles"):
+            column.prop(light.cycles, "is_portal", text="Portal")
     else:
         column.prop(light, "shadow_soft_size", text="Radius")
         if "use_soft_falloff" in light.bl_rna.properties:
@@ -145,12 +207,7 @@ def lamp_nodes(layout: Any, context: Any) -> None:
         layout.prop(light, "use_nodes", icon="NODETREE")
     if not uses_nodes(light):
         return
-    layout.use_property_split = True
-    output = light.node_tree.get_output_node("CYCLES")
-    if output is None:
-        layout.label(text="No output node")
-    else:
-        layout.template_node_view(light.node_tree, output, output.inputs["Surface"])
+    _draw_socket(layout, light, "Surface")
 
 
 @panel("SHLIGHT_VIEWLAYER_PT_passes_data", "Data", parent="VIEWLAYER_PT_layer_passes")
@@ -192,9 +249,14 @@ def _light_group_of(owner: str) -> Draw:
 
 
 CLASSES = (
+    *map(_preview_panel, ("world", "light")),
     world_picture,
+    *map(_socket_panel, ("Volume", "Displacement")),
+    material_settings,
     measured,
     ray_visibility,
+    object_motion_blur,
+    shadow_terminator,
     lamp,
     lamp_nodes,
     panorama,

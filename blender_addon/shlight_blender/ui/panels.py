@@ -26,15 +26,8 @@ EXCLUDED = {
 NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")
 # Panels of EEVEE and Cycles that edit what shlight reads too, in all versions of Blender.
 INCLUDED = {
-    "CYCLES_LIGHT_PT_preview",
-    "CYCLES_MATERIAL_PT_displacement",
-    "CYCLES_MATERIAL_PT_settings",
-    "CYCLES_MATERIAL_PT_settings_surface",
-    "CYCLES_MATERIAL_PT_volume",
-    "CYCLES_OBJECT_PT_motion_blur",
     "CYCLES_RENDER_PT_filter",
     "CYCLES_RENDER_PT_override",
-    "CYCLES_WORLD_PT_preview",
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_WORLD_PT_mist",
@@ -78,6 +71,7 @@ def shared_panels() -> Iterator[Any]:
             yield panel
 
 
+_own_engines: list[Any] = []  # panels that have got a set of engines of their own
 _own_polls: dict[Any, Any] = {}  # of the items of Blender's menu of nodes
 
 
@@ -98,7 +92,10 @@ def register() -> None:
     """Adds the panels and their operators, and joins Blender's panels and its menu of nodes."""
     for panel in CLASSES:
         bpy.utils.register_class(panel)
-    for panel in shared_panels():
+    for panel in [*shared_panels()]:
+        if "COMPAT_ENGINES" not in vars(panel):  # its base's, which other panels of Cycles have too
+            panel.COMPAT_ENGINES = set(panel.COMPAT_ENGINES)
+            _own_engines.append(panel)
         panel.COMPAT_ENGINES.add(ENGINE)
     _offer_nodes()
     light_mixer.register()
@@ -110,6 +107,8 @@ def unregister() -> None:
     while _own_polls:
         item, poll = _own_polls.popitem()
         item.poll = poll
+    while _own_engines:
+        del _own_engines.pop().COMPAT_ENGINES
     for panel in _panels():
         if panel not in CLASSES:
             getattr(panel, "COMPAT_ENGINES", set()).discard(ENGINE)

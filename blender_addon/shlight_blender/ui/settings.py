@@ -118,6 +118,7 @@ def film(layout: Any, context: Any) -> None:
     layout.prop(context.scene.render, "film_transparent", text="Transparent")
     cycles = getattr(context.scene, "cycles", None)
     if cycles is not None:
+        layout.prop(cycles, "film_exposure")
         column = layout.column(align=True)
         column.prop(cycles, "pixel_filter_type", text="Pixel Filter")
         if cycles.pixel_filter_type != "BOX":
