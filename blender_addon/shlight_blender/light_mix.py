@@ -52,6 +52,7 @@ class LightMix:
     def __init__(self, layers: Arrays, factors: Factors) -> None:
         """factors: that the picture was rendered with."""
         self.factors = factors
+        self.is_rendered = True  # the picture with these factors
         picture = layers["combined"][::-1]
         self._shape = picture.shape
         self._whole = np.ascontiguousarray(picture).reshape(len(picture), -1)
@@ -62,9 +63,20 @@ class LightMix:
                 row = self._lights.setdefault(lamp, np.zeros_like(self._whole))
                 row.reshape(self._shape)[..., :3] += light[::-1]
         self._mixed = np.empty_like(self._whole)
+        self._begin()
+
+    def _begin(self) -> None:
         self._held = self._whole.copy()  # the picture with all changes but that of one lamp
         self._moved, self._held_sum = "", dict[str, tuple[float, ...]]()
         self._changes: dict[str, tuple[float, ...]] = {}
+
+    def apply(self, factors: Factors) -> None:
+        """Takes the picture by these factors for the one by none: the lamps themselves have them from now on."""
+        self._whole = self.picture(factors).reshape(len(self._whole), -1).copy()
+        for name, light in self._lights.items():
+            light += light * self._per_row(self._change(name, factors))
+        self.factors, self.is_rendered = {}, False
+        self._begin()
 
     def covers(self, factors: Factors) -> bool:
         """Whether the picture has the light that these factors ask for, with little more noise."""

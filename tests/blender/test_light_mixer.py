@@ -79,6 +79,7 @@ def test_apply_writes_what_is_seen_and_reset_takes_it_back(lit: Any) -> None:
     assert bpy.data.objects["Key"].data.energy == pytest.approx(30.0)
     assert bpy.data.objects["Fill"].hide_render
     assert factors_of(lit.scene) == {}
+    np.testing.assert_allclose(mixed(), before, rtol=1e-4, atol=1e-4)
     np.testing.assert_allclose(lit.render("SHLIGHT"), before, rtol=1e-5, atol=1e-5)
     row("Key").power = 3.0
     assert bpy.ops.shlight.reset_light_mix() == {"FINISHED"}

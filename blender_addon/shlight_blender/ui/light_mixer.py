@@ -29,11 +29,11 @@ def show_mix(context: Any) -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
-    factors = factors_of(context.scene)
-    if factors is None or record.last.mix is None or factors == record.last.mix.factors or mix_problem(context):
+    factors, mix = factors_of(context.scene), record.last.mix
+    if factors is None or mix_problem(context) or (mix.is_rendered and factors == mix.factors):
         _exchange(MIX, RENDERED)
     else:
-        _draw(record.last.mix.picture(factors))
+        _draw(mix.picture(factors))
         _exchange(RENDERED, MIX)
 
 
@@ -99,7 +99,10 @@ class SHLIGHT_OT_apply_light_mix(bpy.types.Operator):
         for row in rows:
             if not row.on:
                 found[row.name].hide_render = found[row.name].hide_viewport = True
-        _reset(context.scene)
+        factors, mix = factors_of(context.scene), record.last.mix
+        if factors and mix is not None and mix.covers(factors):
+            mix.apply(factors)
+        _reset(context)
         return {"FINISHED"}
 
 
@@ -111,7 +114,7 @@ class SHLIGHT_OT_reset_light_mix(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: Any) -> set[str]:
-        _reset(context.scene)
+        _reset(context)
         return {"FINISHED"}
 
 
@@ -119,9 +122,11 @@ def _is_neutral(row: Any) -> bool:
     return bool(row.on and row.power == 1.0 and tuple(row.color) == ONE)
 
 
-def _reset(scene: Any) -> None:
-    for row in scene.shlight.light_mix:
-        row.on, row.power, row.color = True, 1.0, ONE
+def _reset(context: Any) -> None:
+    for row in context.scene.shlight.light_mix:
+        for name in ("on", "power", "color"):
+            row.property_unset(name)  # shows no mix for each of them
+    show_mix(context)
 
 
 def _apply_problem(row: Any, lamp: Any, rows: Any) -> str:
