@@ -25,6 +25,9 @@ GROUP = "combined_"  # what the names of light groups begin with among layers
 LIT_PASSES = ("direct", "indirect", "emission", "environment")  # ends of the names of passes that have light
 
 
+LARGEST_FACTOR = 1e10
+
+
 class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
     """The picture of a render: an array (height, width, 4) float32, linear, premultiplied, row 0 on top.
 
@@ -85,8 +88,10 @@ class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
         factors: by the group's name a number, or one for each of red, green and blue; others stay as they are.
         Alpha stays, and so do passes that have no light; the others are left out. Light is linear, so that nothing is
         rendered. Noise is multiplied as the light is.
-        Raises ValueError for a name that is in no group, and factors that are negative or not finite.
+        Raises ValueError for a name that is in no group, and factors that are not in 0 … 1e10.
         """
+        if not isinstance(factors, Mapping):
+            raise ValueError(f"factors must be a dict of numbers by the names of groups, got {type(factors).__name__}")
         layers = {name: own for name, own in self.passes.items() if not name.endswith(LIT_PASSES)}
         changes = {name: _checked_factor(name, factor, self.groups) for name, factor in factors.items()}
         layers |= {GROUP + name: light * changes.get(name, np.float32(1)) for name, light in self.groups.items()}
@@ -133,14 +138,15 @@ class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
 def _checked_factor(name: str, factor: float | Sequence[float], groups: Mapping[str, Pixels]) -> Pixels:
     if name not in groups:
         known = ", ".join(map(repr, groups)) if groups else "none; `render` makes them with groups=True"
-        raise ValueError(f"factors: there is no group {name!r}; the picture's groups are {known}")
+        named = repr(name) if isinstance(name, str) else f"of type {type(name).__name__}"
+        raise ValueError(f"factors: there is no group {named}; the picture's groups are {known}")
     try:
-        checked = np.asarray(factor, np.float32)
-    except (TypeError, ValueError):
-        checked = np.empty(0, np.float32)
-    if checked.shape not in {(), (3,)} or not (np.isfinite(checked) & (checked >= 0)).all():
-        raise ValueError(f"factors[{name!r}] must be a finite number of 0 or more, or three of them, got {factor!r}")
-    return checked
+        checked = np.asarray(factor, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        checked = np.empty(0)
+    if checked.shape not in {(), (3,)} or not ((checked >= 0) & (checked <= LARGEST_FACTOR)).all():
+        raise ValueError(f"factors[{name!r}] must be 0 … {LARGEST_FACTOR:g}, or three such numbers")
+    return checked.astype(np.float32)
 
 
 class RenderOptions(TypedDict, total=False):

@@ -308,6 +308,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"scene": new_scene(), **RENDER, **SETTINGS, "kept_light": shlight.KeptLight(), "return_report": True},
     ),
     "RenderResult.save": (shlight.RenderResult({"combined": picture(4, np.float32)}).save, {"path": "a.png"}),
+    "RenderResult.mix": (
+        shlight.RenderResult({"combined": picture(4, np.float32), "combined_Key": picture(3, np.float32)}).mix,
+        {"factors": {"Key": 0.5}},
+    ),
     "RenderResult.keys": (shlight.RenderResult({"combined": picture(4, np.float32)}).keys, {}),
     "RenderResult.items": (shlight.RenderResult({"combined": picture(4, np.float32)}).items, {}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
