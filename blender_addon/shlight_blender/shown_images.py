@@ -47,13 +47,6 @@ def draw_image(image: Any, pixels: Pixels) -> None:
     bpy.app.timers.register(_settle, first_interval=SETTLE_SECONDS)
 
 
-def forget_changes() -> None:
-    """Saves no image any more."""
-    _unsaved.clear()
-    if bpy.app.timers.is_registered(_settle):
-        bpy.app.timers.unregister(_settle)
-
-
 def image_editors() -> list[Any]:
     """Areas of all windows."""
     windows = bpy.context.window_manager.windows
@@ -66,6 +59,7 @@ def _write(image: Any, pixels: Pixels) -> None:
 
 
 def _settle() -> None:
+    """Saves what is still there."""
     while _unsaved:
         if (image := bpy.data.images.get(_unsaved.pop())) is not None:
             image.save()

@@ -94,11 +94,12 @@ class RenderResult(np.ndarray[Any, np.dtype[np.float32]]):
             raise ValueError(f"factors must be a dict of numbers by the names of groups, got {type(factors).__name__}")
         layers = {name: own for name, own in self.passes.items() if not name.endswith(LIT_PASSES)}
         changes = {name: _checked_factor(name, factor, self.groups) for name, factor in factors.items()}
-        layers |= {GROUP + name: light * changes.get(name, np.float32(1)) for name, light in self.groups.items()}
+        groups = self.groups | {name: self.groups[name] * change for name, change in changes.items()}
+        layers |= {GROUP + name: light for name, light in groups.items()}
         layers["combined"] = np.array(self)
         rgb = np.ascontiguousarray(layers["combined"][..., :3])  # sums of its rows are several times as fast
         for name in changes:
-            rgb += layers[GROUP + name] - self.groups[name]
+            rgb += groups[name] - self.groups[name]
         layers["combined"][..., :3] = np.maximum(rgb, 0) if changes else rgb
         return RenderResult(layers, self.report)
 

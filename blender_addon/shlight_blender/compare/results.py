@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from ..names import name_of
-from ..shown_images import Pixels, draw_image, forget_changes, image_editors, make_image
+from ..shown_images import Pixels, draw_image, image_editors, make_image
 from .pictures import difference_limit, in_palette
 
 COMPARISON, DIFFERENCE, REFERENCE = "shlight Comparison", "shlight Difference", "shlight Reference"
@@ -94,7 +94,6 @@ def remove() -> None:
 def forget() -> None:
     """Forgets the results, as of a file that is closed."""
     global last
-    forget_changes()
     if last is not None:
         shutil.rmtree(last.folder, ignore_errors=True)
     last = None

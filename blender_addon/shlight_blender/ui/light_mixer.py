@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from bpy.app.handlers import persistent
 from .. import record
 from ..light_mix import ONE, factors_of, follow_lamps
 from ..names import with_name
-from ..shown_images import draw_image, forget_changes, image_editors, make_image
+from ..shown_images import draw_image, image_editors, make_image
 from .base import panel
 
 MIX, RENDERED = "shlight Light Mix", "Render Result"
@@ -70,7 +71,6 @@ def _exchange(before: str, after: str) -> None:
 
 def _remove_image() -> None:
     global _folder
-    forget_changes()
     if (image := bpy.data.images.get(MIX)) is not None:
         bpy.data.images.remove(image)
     if _folder is not None:
@@ -86,10 +86,11 @@ class SHLIGHT_OT_apply_light_mix(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: Any) -> set[str]:
-        rows = [row for row in context.scene.shlight.light_mix if not _is_neutral(row)]
-        found = {row.name: with_name(bpy.data.objects, row.name) for row in rows}
+        all_rows = context.scene.shlight.light_mix
+        found = {row.name: with_name(bpy.data.objects, row.name) for row in all_rows}
+        rows = [row for row in all_rows if not _is_neutral(row)]
         for row in rows:
-            if problem := _apply_problem(row, found[row.name], context.scene.shlight.light_mix):
+            if problem := _apply_problem(row, all_rows, found):
                 self.report({"ERROR"}, f"shlight: nothing was applied: Light '{row.name}' {problem}")
                 return {"CANCELLED"}
         lamps = {found[row.name].data: row for row in rows if row.on}
@@ -129,15 +130,17 @@ def _reset(context: Any) -> None:
     show_mix(context)
 
 
-def _apply_problem(row: Any, lamp: Any, rows: Any) -> str:
-    """Why a lamp cannot have what the mixer says; empty if it can."""
+def _apply_problem(row: Any, rows: Any, found: Mapping[str, Any]) -> str:
+    """Why a lamp cannot have what its row says; empty if it can. found: the lamps of all rows by their names."""
+    lamp = found[row.name]
     if lamp is None or lamp.library is not None or lamp.data.library is not None:
         return "is in another file"
     animation = lamp.data.animation_data
     if row.on and animation is not None and (animation.action or animation.drivers or animation.nla_tracks):
         return "has power or colour that may be animated"
     for other in rows:
-        shares = (found := with_name(bpy.data.objects, other.name)) is not None and found.data == lamp.data
+        owner = found[other.name]
+        shares = owner is not None and owner.data == lamp.data
         if row.on and shares and other.on and (other.power, *other.color) != (row.power, *row.color):
             return f"shares its data with '{other.name}', which has other factors"
     return ""
