@@ -188,9 +188,11 @@ class NodeInputs:
         """Adds a line about this node to the report."""
         self.reader.report.add(f"{self.reader.place}, node '{node_name(self.node)}'", text, effect)
 
-    def remark_hidden_behind(self, what: str) -> None:
-        """Reports glass in a picture of direct light."""
-        if not self.reader.surroundings.light_bounces:
+    def remark_glass(self, what: str) -> None:
+        """Reports what glass lacks in a picture of direct light, and in one with bounces."""
+        if self.reader.surroundings.light_bounces:
+            self.remark("light that it focuses on other surfaces (caustics) is blurred", Effect.LOOK)
+        else:
             self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
 
     def remark_nothing_reflected(self) -> None:

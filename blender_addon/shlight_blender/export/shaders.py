@@ -58,7 +58,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Metallic").constant != 0.0:
         inputs.remark_nothing_reflected()
     if inputs.number("Transmission Weight").constant != 0.0:
-        inputs.remark_hidden_behind("'Transmission Weight'")
+        inputs.remark_glass("'Transmission Weight'")
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
@@ -89,7 +89,7 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     glow = nodes.emission(inputs.color("Emission") * inputs.number("Emission Strength"))
     transmission = clamp(inputs.number("Transmission"))
     if transmission.constant != 0.0:
-        inputs.remark_hidden_behind("'Transmission'")
+        inputs.remark_glass("'Transmission'")
     through = transmission * (1.0 - metallic)
     diffuse = (1.0 - metallic) * (1.0 - transmission)
     surface = _diffuse_of_sum(inputs, base, roughness) * diffuse
@@ -232,7 +232,7 @@ def _metallic(inputs: NodeInputs) -> Shader:
 
 
 def _glass(inputs: NodeInputs) -> Shader:
-    inputs.remark_hidden_behind(inputs.node.bl_label)
+    inputs.remark_glass(inputs.node.bl_label)
     tint, ior, roughness = inputs.color("Color"), inputs.number("IOR"), _roughness(inputs)
     bends = inputs.reader.surroundings.light_bounces and roughness.constant != 0.0
     if bends and inputs.node.distribution in DISTRIBUTIONS:
