@@ -100,6 +100,24 @@ def light():
         lamp.energy *= chance.choice([0.8, 1.25])
 
 
+def mix():
+    """Draws a slider of the light mixer, or presses one of its buttons."""
+    if not ready():
+        return
+    settings = window().scene.shlight
+    settings.use_light_mixer = chance.random() < 0.8
+    for row in settings.light_mix:
+        row.power, row.on = chance.choice([0.0, 0.5, 1.0, 2.0, 20.0]), chance.random() < 0.8
+    if chance.random() < 0.3:
+        chance.choice([bpy.ops.shlight.apply_light_mix, bpy.ops.shlight.reset_light_mix])()
+
+
+def delete():
+    if bpy.ops.object.delete.poll():
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.ops.object.delete()
+
+
 STEP = {
     "F12": (6, lambda: ready() and press("F12")),
     "render": (6, render),
@@ -114,6 +132,8 @@ STEP = {
     "viewport": (4, shade),
     "orbit": (3, orbit),
     "light": (3, light),
+    "mix": (4, mix),
+    "delete": (1, delete),
     "new": (2, lambda: bpy.ops.wm.read_homefile()),
     "factory": (1, lambda: bpy.ops.wm.read_factory_settings()),
     "save": (2, lambda: bpy.ops.wm.save_as_mainfile(filepath=FILE)),

@@ -94,6 +94,7 @@ def test_area_lamp_under_any_scale(studio: Any, scale: tuple[float, float, float
     studio.compare()
 
 
+@pytest.mark.slow
 def test_a_crowd_of_far_lamps(studio: Any) -> None:
     studio.still_life()
     studio.camera()
@@ -218,6 +219,7 @@ def test_curves_texts_and_metaballs(studio: Any) -> None:
     studio.compare(error=1e-2)
 
 
+@pytest.mark.slow
 def test_emissive_icosphere(studio: Any) -> None:
     """1280 faces that glow, as one light."""
     studio.plane(material=studio.material())

@@ -59,7 +59,7 @@ SHAPES = {
         ("square", "True Normal", 0, 5, False, -1),
         ("box", "Backfacing", 5, 2, True, 1),
         pytest.param("ball", "Backfacing", 5, 0, False, 1, marks=pytest.mark.slow),
-        ("half ball", "Backfacing", 0, 5, False, -1),
+        pytest.param("half ball", "Backfacing", 0, 5, False, -1, marks=pytest.mark.slow),
         pytest.param("half ball", "Backfacing", 2, 5, True, 1, marks=pytest.mark.slow),
     ],
 )
@@ -79,7 +79,7 @@ def test_each_side_gives_its_own_light(
     assert studio.messages(most=99) == []
 
 
-@pytest.mark.parametrize("textured", [False, True])
+@pytest.mark.parametrize("textured", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_dome_lights_what_it_surrounds_by_its_inside_alone(studio: Any, textured: bool) -> None:
     studio.plane(2, studio.material(), rotation_euler=(0.2, 0.3, 0))
     dome = studio.ball(4, glow(studio, "Backfacing", 0, 1, textured=textured), rings=8)

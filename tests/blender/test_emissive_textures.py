@@ -107,9 +107,8 @@ def screen(studio: Any, image: Any, coordinates: Any, strength: float = 5.0, **o
 OFF_CENTRE = [(0.1, 0.05), (0.95, 0.15), (0.85, 0.9), (0.05, 0.8)]
 
 
-@pytest.mark.parametrize(
-    ("pixels", "is_float"), [(gradient(), True), pytest.param(checker(), False, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("pixels", "is_float"), [(gradient(), True), (checker(), False)])
 def test_a_screen_lights_floors_as_in_cycles(studio: Any, pixels: Array, is_float: bool) -> None:
     interpolation = "Linear" if is_float else "Closest"
     screen(studio, studio.picture(pixels, is_float=is_float), OFF_CENTRE, interpolation=interpolation)
@@ -160,9 +159,9 @@ def looked_up(studio: Any, made: Any) -> tuple[Array, Array]:
     [
         ("REPEAT", "Linear", "", False),
         ("EXTEND", "Linear", "POINT", True),
-        ("CLIP", "Linear", "TEXTURE", False),
+        pytest.param("CLIP", "Linear", "TEXTURE", False, marks=pytest.mark.slow),
         ("CLIP", "Closest", "VECTOR", True),
-        ("MIRROR", "Closest", "POINT", False),
+        pytest.param("MIRROR", "Closest", "POINT", False, marks=pytest.mark.slow),
         ("MIRROR", "Linear", "", True),
     ],
 )

@@ -51,6 +51,7 @@ def test_render_from_python_shows_a_lit_ball(tmp_path: Path) -> None:
     images.write_png(tmp_path / "a.png", images.linear_to_srgb8(image))
 
 
+@pytest.mark.slow
 def test_textured_obj_shows_its_picture(tmp_path: Path) -> None:
     (tmp_path / "a.obj").write_text(
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"

@@ -235,6 +235,7 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
+@pytest.mark.slow
 def test_survives_a_killed_worker_and_a_frame_that_fails(scene: Path, tmp_path: Path) -> None:
     (tmp_path / "fault").touch()
     out, alone = tmp_path / "out", tmp_path / "alone"
@@ -355,6 +356,7 @@ def tls(tmp_path: Path) -> Iterator[tuple[str, list[str], subprocess.Popen[str]]
         process.wait(SECONDS)
 
 
+@pytest.mark.slow
 def test_workers_elsewhere_get_all_files_sent_over_tls(
     tmp_path: Path, tls: tuple[str, list[str], subprocess.Popen[str]]
 ) -> None:

@@ -123,6 +123,7 @@ def test_noise_far_away(studio: Any, node: str, properties: dict[str, Any], inpu
     assert many <= noise / 100
 
 
+@pytest.mark.slow
 def test_few_rays_see_normals_as_many_do(studio: Any) -> None:
     """A lobe at the mean normal is not the mean of the lobes: a filter would leave an error that no noise tells.
 
@@ -143,7 +144,14 @@ def test_few_rays_see_normals_as_many_do(studio: Any) -> None:
     np.testing.assert_allclose(ours_at(4), few, rtol=1e-5, atol=1e-6)
 
 
-@pytest.mark.parametrize(("width", "mirrored"), [(0.1, False), (1.0, False), (1.0, True)])
+@pytest.mark.parametrize(
+    ("width", "mirrored"),
+    [
+        pytest.param(0.1, False, marks=pytest.mark.slow),
+        pytest.param(1.0, False, marks=pytest.mark.slow),
+        (1.0, True),
+    ],
+)
 def test_bumps_as_fine_as_a_pixel(studio: Any, width: float, mirrored: bool) -> None:
     """A ball, or its picture in a mirror: where heights are compared decides what it looks like."""
     material = studio.material("ShaderNodeBsdfPrincipled", Roughness=1.0 if mirrored else 0.3)

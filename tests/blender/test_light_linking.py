@@ -71,7 +71,7 @@ def stage(studio: Any, kinds: tuple[str, ...], bounces: int) -> tuple[list[Any],
 
 
 @pytest.mark.parametrize("bounces", [0, pytest.param(2, marks=SLOW)])
-@pytest.mark.parametrize("kind", [pytest.param(own, marks=() if own in {"AREA", "SHARP"} else SLOW) for own in LIGHTS])
+@pytest.mark.parametrize("kind", [pytest.param(own, marks=() if own == "SHARP" else SLOW) for own in LIGHTS])
 def test_a_light_lights_some_objects_and_others_shadow_it(studio: Any, kind: str, bounces: int) -> None:
     (light,), objects = stage(studio, (kind,), bounces)
     studio.scene.cycles.samples = 1024

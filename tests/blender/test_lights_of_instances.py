@@ -122,6 +122,7 @@ def on_points(studio: Any, collection: Any) -> None:
     studio.on_points(CORNERS, [], instances, Scale=(1.0, 0.7, -1.3), Rotation=(math.pi - 0.3, 0.2, 0.5))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", QUICK_KINDS)
 def test_lamps_of_geometry_nodes(studio: Any, kind: str) -> None:
     stage(studio)

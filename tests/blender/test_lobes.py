@@ -137,10 +137,8 @@ def varying(studio: Any) -> Any:
 @pytest.mark.parametrize(
     ("light", "names", "samples"),
     [
-        pytest.param("point of light", QUICK, 256, id="quick-point of light"),
-        *(pytest.param(light, QUICK, 1024, id=f"quick-{light}") for light in ("area", "sphere")),
+        pytest.param("area", QUICK, 1024, id="quick-area"),
         pytest.param("sky", QUICK[:2], 1024, id="quick-sky"),
-        pytest.param("point of light", QUICK_TOONS, 1024, id="toon-quick-point of light"),
         pytest.param("area", QUICK_TOONS, 1024, id="toon-quick-area"),
         *(pytest.param(light, None, 4096, marks=pytest.mark.slow, id=light) for light in LIGHTS),
         *(pytest.param(light, tuple(TOONS), 1024, marks=pytest.mark.slow, id=f"toon-{light}") for light in LIGHTS),

@@ -151,6 +151,7 @@ def test_it_is_drawn_in_the_place_of_the_nodes_and_named_and_they_afterwards(pap
     np.testing.assert_array_equal(middle(paper), by_nodes)
 
 
+@pytest.mark.slow
 def test_a_comparison_draws_the_same_picture(paper: Any, measured: Path) -> None:
     from shlight_blender.compare import results
 

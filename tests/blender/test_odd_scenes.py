@@ -83,6 +83,7 @@ def test_what_is_missing_of_a_library(studio: Any, missing: str) -> None:
     assert ["green.png' is missing" in line for line in studio.messages()] == [True] * (missing == "texture")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="asks the system for the memory of the process")
 @pytest.mark.parametrize("persistent", [False, True])
 def test_renders_do_not_gather_memory(studio: Any, persistent: bool) -> None:

@@ -223,7 +223,10 @@ def test_requests_that_cannot_be_met(
     assert "'dark lamp'" in line
 
 
-def test_options_that_are_not_understood(capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_that_are_not_understood(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
     wrong = {"--size": ["0x5", "big"], "--samples": ["1"], "--reference-seconds": ["-1", "nan"], "--order": ["65"]}
     for option, values in (wrong | {"--tolerance": ["nan"], "--threads": ["-1"]}).items():
         for value in values:

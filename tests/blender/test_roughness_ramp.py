@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -35,6 +36,7 @@ def bends(values: Array) -> Array:
     return values[..., 1:-1] - 0.5 * (values[..., :-2] + values[..., 2:])
 
 
+@pytest.mark.slow
 def test_no_step_of_the_ramp_stands_out(studio: Any) -> None:
     """A reflection bends slowly along even steps: what a step's neighbours do not share is a seam.
 

@@ -48,13 +48,14 @@ def looks_as_in_cycles(studio: Any) -> None:
     assert abs(image.mean() / reference.mean() - 1.0) <= 2e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", WITH_SUN)
 @pytest.mark.parametrize(
     "air",
     [
-        pytest.param({}, marks=pytest.mark.slow),
-        pytest.param({"sun_elevation": math.radians(95.0)}, marks=pytest.mark.slow),
-        pytest.param({"sun_elevation": math.radians(-2.0)}, marks=pytest.mark.slow),
+        {},
+        {"sun_elevation": math.radians(95.0)},
+        {"sun_elevation": math.radians(-2.0)},
         {"altitude": 3000.0, "air_density": 2.0, "dust": 4.0, "ozone_density": 3.0},
     ],
 )
@@ -79,7 +80,7 @@ def test_the_sky_of_preetham(studio: Any, sun: tuple[float, float, float], turbi
         ((0.6, 0.3, 0.5), 2.2, 0.3),
         pytest.param((0, 0, 1), 1.0, 1.0, marks=pytest.mark.slow),
         pytest.param((-0.7, 0.7, 0.05), 6.5, 0.7, marks=pytest.mark.slow),
-        ((0, 1, -0.3), 9.5, 0.0),
+        pytest.param((0, 1, -0.3), 9.5, 0.0, marks=pytest.mark.slow),
     ],
 )
 def test_the_sky_of_hosek_and_wilkie(
@@ -98,7 +99,7 @@ def test_the_sky_of_hosek_and_wilkie(
         pytest.param({"sun_size": math.radians(0.05)}, marks=pytest.mark.slow),
         pytest.param({"sun_size": math.radians(4.0)}, marks=pytest.mark.slow),
         pytest.param({"sun_size": math.radians(8.0)}, marks=pytest.mark.slow),
-        {"sun_elevation": math.radians(0.1), "sun_intensity": 3.0},
+        pytest.param({"sun_elevation": math.radians(0.1), "sun_intensity": 3.0}, marks=pytest.mark.slow),
     ],
 )
 def test_what_a_sky_and_its_sun_light(studio: Any, kind: str, sun: dict[str, float]) -> None:
@@ -200,6 +201,7 @@ def test_what_a_picture_cannot_hold_is_named(studio: Any, change: Callable[[Any]
     assert text in message
 
 
+@pytest.mark.slow
 def test_a_sky_on_a_surface(studio: Any) -> None:
     """A ball emits the sky of its generated coordinates, and the sun's disc is on it."""
     sky_kind = WITH_SUN[-1]

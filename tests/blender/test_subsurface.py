@@ -40,9 +40,14 @@ def light(studio: Any) -> None:
     [
         pytest.param(add_ball, {"falloff": "RANDOM_WALK", "Scale": 0.2}, id="walk"),
         pytest.param(add_cube, {"falloff": "RANDOM_WALK", "Scale": 0.6, "Roughness": 0.2, "IOR": 1.8}, id="bent"),
-        pytest.param(add_slab, {"falloff": "RANDOM_WALK_SKIN", "Scale": 0.3, "Anisotropy": 0.6}, id="skin"),
+        pytest.param(
+            add_slab,
+            {"falloff": "RANDOM_WALK_SKIN", "Scale": 0.3, "Anisotropy": 0.6},
+            id="skin",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(add_ball, {"falloff": "BURLEY", "Scale": 0.5}, id="burley"),
-        pytest.param(add_ball, {"falloff": "RANDOM_WALK", "Scale": 1e-9}, id="none"),
+        pytest.param(add_ball, {"falloff": "RANDOM_WALK", "Scale": 1e-9}, id="none", marks=pytest.mark.slow),
     ],
 )
 def test_subsurface_scattering(studio: Any, add: Any, inputs: dict[str, Any]) -> None:

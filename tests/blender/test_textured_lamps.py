@@ -85,7 +85,7 @@ def told_differences(studio: Any) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "case", [name if name in {"mirrored", "mapped", "disk"} else pytest.param(name, marks=SLOW) for name in CASES]
+    "case", [name if name in {"mirrored", "mapped"} else pytest.param(name, marks=SLOW) for name in CASES]
 )
 def test_it_lights_floors_as_in_cycles(studio: Any, case: str) -> None:
     properties, coordinates = CASES[case]

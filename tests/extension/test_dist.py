@@ -135,6 +135,7 @@ def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
     np.testing.assert_array_equal(*(read_exr(picture) for picture in pictures))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(BLENDER is None, reason="no program named blender is installed")
 def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
     """In Blender 3.4 it renders what the source tree renders, compares, and has all in its own folder."""

@@ -18,7 +18,7 @@ import shlight
 from shlight import images
 from shlight_tools import methods
 
-PROCESSES, THINNED = 4, 3
+PROCESSES, THINNED = 4, 6
 
 
 def public_functions() -> Iterator[tuple[str, Any]]:

@@ -105,6 +105,7 @@ def own_peer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peer, "check_installed", lambda: None)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("own_peer")
 def test_a_small_run_of_all_sections(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Run, "size", lambda self, usual: (4, 3))

@@ -23,6 +23,8 @@ from shlight_tools.charts import (
 from shlight_tools.charts.figure import Figure, Run
 from shlight_tools.charts.lights import CLASSES
 
+QUICK = ("growth", "order_error")
+
 
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -44,7 +46,10 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("small")
-@pytest.mark.parametrize("figure", figures.FIGURES, ids=lambda figure: figure.name)
+@pytest.mark.parametrize(
+    "figure",
+    [pytest.param(own, marks=() if own.name in QUICK else pytest.mark.slow, id=own.name) for own in figures.FIGURES],
+)
 def test_a_small_drawing_of_each_figure(figure: Figure, tmp_path: Path) -> None:
     shares: list[float] = []
     run = Run(figure.name, tmp_path, quick=True, report=lambda share, _: shares.append(share))

@@ -208,7 +208,9 @@ def sheen_value(roughness: float, light: Doubles) -> Doubles:
     return np.asarray(z / math.pi * (a / ((a * x + b * z) ** 2 + (a * y) ** 2 + z * z)) ** 2)
 
 
-@pytest.mark.parametrize("roughness", [0.4, 0.6, 1.0])
+@pytest.mark.parametrize(
+    "roughness", [pytest.param(0.4, marks=pytest.mark.slow), 0.6, pytest.param(1.0, marks=pytest.mark.slow)]
+)
 def test_microfibres_are_a_transformed_cosine(roughness: float) -> None:
     share = radiance(nodes.microfibre(1.0, roughness), None)[0]
     assert share <= 1 + 1e-3

@@ -52,7 +52,8 @@ OUTSIDE = ("spheres", "polygons", "disks", "faces")
     ("material", "kinds"),
     [
         *(("lambert", (kind,)) for kind in LIGHTS),
-        *(("gold", kinds) for kinds in (("spheres",), ("inside",), ("polygons", "faces"), ("disks",))),
+        ("gold", ("polygons", "faces")),
+        *(pytest.param("gold", (kind,), marks=pytest.mark.slow) for kind in ("spheres", "inside", "disks")),
         *(("plastic", OUTSIDE), ("mirror", OUTSIDE)),
     ],
 )

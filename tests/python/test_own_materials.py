@@ -121,7 +121,7 @@ def test_a_table_is_printed_as_one_lobe() -> None:
     )
 
 
-@pytest.mark.parametrize("which", ["isotropic", "anisotropic"])
+@pytest.mark.parametrize("which", ["isotropic", pytest.param("anisotropic", marks=pytest.mark.slow)])
 def test_lights_under_a_function(which: str, request: pytest.FixtureRequest) -> None:
     f = ISOTROPIC if which == "isotropic" else ANISOTROPIC
     bsdf = request.getfixturevalue(which)

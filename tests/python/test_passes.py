@@ -171,6 +171,7 @@ def test_direct_passes_do_not_change_when_light_bounces() -> None:
         assert bounced[f"{kind}_indirect"].max() > 0.05
 
 
+@pytest.mark.slow
 def test_a_group_has_the_light_of_its_lamps_after_all_bounces() -> None:
     """Each group's light differs from a render of its lamps alone by no more than renders of other seeds do."""
 
