@@ -406,6 +406,7 @@ BAD_REQUESTS = {
     "set: shlight.noise_threshold must be 0 … 1": ["--out", "x_#.exr", "--set", "shlight.noise_threshold=2"],
     "there is no view or camera 'left'": ["--out", "x_#.exr", "--views", "left", "--workers", "0"],
     "cannot be given both": ["--out", "x_#.exr", "--scheduler", "tcp://127.0.0.1:1", "--workers", "2"],
+    "scheduler tcp://farm:1 is elsewhere": ["--out", "x_#.exr", "--scheduler", "tcp://farm:1"],
     "belong together": ["--out", "x_#.exr", "--tls-ca", "x"],
     "the scene has no property 'shlight.nois'": ["--out", "x_#.exr", "--set", "shlight.nois=2", "--workers", "0"],
 }
@@ -420,4 +421,4 @@ def test_bad_requests_are_one_line(scene: Path) -> None:
     code, output = run(json.dumps(list(BAD_REQUESTS.values())), scene, "--frames", "1-2", code=IN_TURN)
     assert code == 0
     lines = output.splitlines()
-    assert [text in line for text, line in zip(BAD_REQUESTS, lines, strict=True)] == 6 * [True], output
+    assert [text in line for text, line in zip(BAD_REQUESTS, lines, strict=True)] == 7 * [True], output

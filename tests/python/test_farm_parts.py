@@ -18,6 +18,7 @@ from shlight import images
 from shlight.farm import Outcome, Picture, Rendered, command, files, parse_frames
 from shlight.farm.frames import file_of
 from shlight.farm.pictures import boxes_of
+from shlight.farm.tls import is_loopback
 
 PIXELS = np.random.default_rng(1).random((100, 130, 5), dtype=np.float32)
 WHOLE = Picture(3, "", Path(), (130, 100), "abc", (None,))
@@ -114,3 +115,20 @@ def test_coefficients_of_the_example() -> None:
     found = example["coefficients"](spheres).compute(scheduler="sync")
     values = spheres.compute(scheduler="sync")
     np.testing.assert_array_equal(found, shlight.sphere_coefficients(values[:, :3], values[:, 3], 4, dtype=np.float32))
+
+
+@pytest.mark.parametrize(
+    ("address", "own"),
+    [
+        ("tcp://127.0.0.1:8786", True),
+        ("localhost:8786", True),
+        ("tls://[::1]:8786", True),
+        ("inproc://1/2", True),
+        ("tcp://127.0.0.1.farm.example:8786", False),
+        ("tcp://192.168.0.2:8786", False),
+        ("tcp://farm:8786", False),
+        ("", False),
+    ],
+)
+def test_schedulers_on_this_machine_are_known(address: str, own: bool) -> None:
+    assert is_loopback(address) == own

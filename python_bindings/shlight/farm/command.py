@@ -137,6 +137,7 @@ def _parser() -> argparse.ArgumentParser:
     group("--workers", type=int, metavar="N", help="processes on this machine, 0: one without Dask "
           "(default: one for each core, and none for a single picture)")  # fmt: skip
     group("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786 or tls://host:8786")
+    group("--insecure", action="store_true", help="reach a scheduler elsewhere without TLS, in a network of your own")
     group("--send", action="store_true", help="send the file, its textures and libraries to workers")
     for name, text in (("ca", "authority that has signed"), ("cert", "own certificate"), ("key", "its key")):
         group(f"--tls-{name}", metavar="FILE", help=f"{text}, PEM; all connections are encrypted")

@@ -22,7 +22,7 @@ from shlight.farm.one_process import OneProcess
 from shlight.farm.pictures import Picture, Rendered, Source, picture_of
 from shlight.farm.progress import FarmProgress
 from shlight.farm.tasks import Result, Task
-from shlight.farm.tls import Tls
+from shlight.farm.tls import Tls, is_loopback
 
 SOURCES = "shlight.scenes"  # the entry point group of what opens scene files
 
@@ -47,6 +47,7 @@ def render_frames(
     scheduler: str | None = None,
     workers: int | None = None,
     tls: Tls | None = None,
+    insecure: bool = False,
     send: bool = False,
     force: bool = False,
     tile: int | None = None,
@@ -63,7 +64,9 @@ def render_frames(
     settings: properties of the scene such as {"shlight.noise_threshold": 0.005}. scale: of width and height.
     scheduler: the address of a Dask scheduler; None: `workers` processes on this machine, as many as it has cores
         unless it is given, and for a single picture, or with 0 workers, one process without Dask.
-    tls: for all connections. send: workers get the file and what it needs sent, and need not see it.
+    tls: for all connections. insecure: a scheduler elsewhere may be reached without it; whoever reaches one runs any
+        program there, and with what it sends here too.
+    send: workers get the file and what it needs sent, and need not see it.
     force: files that are whole and of this scene and these settings are rendered too.
     tile: OpenEXR files are rendered in tiles of this side; None: those of more than 2^24 pixels in tiles of 1024; 0:
         none. Pixels depend on it within the noise threshold.
@@ -76,6 +79,11 @@ def render_frames(
     wanted, out = None if frames is None else list(dict.fromkeys(frames)), os.fspath(out)
     frame_count = 1 if wanted is None else len(wanted)
     _check(wanted, out, scheduler, workers, tile, retries)
+    if scheduler is not None and not (tls or insecure or is_loopback(scheduler)):
+        raise ValueError(
+            f"scheduler {scheduler} is elsewhere: whoever reaches one without TLS can run programs on this machine and "
+            "its workers; give certificates (tls), or in a network of your own insecure"
+        )
     if tls is not None:
         tls.check()
     several = scheduler is not None or (workers or 0) > 0 or (workers is None and frame_count > 1)

@@ -4,8 +4,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
+
+
+def is_loopback(address: str) -> bool:
+    """Whether a scheduler's address, such as tcp://127.0.0.1:8786 or localhost:8786, is on this machine."""
+    parts = urlsplit(address if "://" in address else f"tcp://{address}")
+    if parts.scheme == "inproc" or parts.hostname == "localhost":
+        return True
+    try:
+        return ip_address(parts.hostname or "").is_loopback
+    except ValueError:  # a name, which may be anywhere
+        return False
 
 
 @dataclass(frozen=True)
