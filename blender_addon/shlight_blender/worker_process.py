@@ -2,9 +2,9 @@
 """Another process that works for this one, from both sides.
 
 `WorkerProcess` starts it, reads its messages without waiting for it, and ends it for good: Blender renders in one, and
-whatever it prints, and even its crash, then ends in one clear line. `serve` is what runs in it. Its last two arguments
-are a folder, which holds request.json and takes what it makes, and a file descriptor for messages. A message is a line
-of JSON, a pair:
+whatever it prints, and even its crash, then ends in one clear line. `serve` is what runs in it. Its last argument is a
+folder, which holds request.json and takes what it makes and its messages. A message is a line of the file messages.json
+there, since descriptors cannot be passed on in every system; it is a pair:
     "stage" and the arguments of Stage: what is done from now on
     "known" and figures by name: of the result, already
     "result" and figures by name: the rest of it, or
@@ -17,7 +17,6 @@ import ctypes
 import importlib.util
 import json
 import os
-import select
 import signal
 import subprocess
 import sys
@@ -32,6 +31,7 @@ from typing import Any
 from .names import one_line
 
 PR_SET_PDEATHSIG = 1  # from linux/prctl.h
+LOG, MESSAGES = "blender.log", "messages.json"  # in the folder
 
 
 class SceneError(RuntimeError):
@@ -67,9 +67,9 @@ def serve(work: Work, argv: list[str]) -> None:
     if sys.platform == "linux":
         # A command that is killed cannot end the worker; then the system does.
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    folder = Path(argv[-2])
+    folder = Path(argv[-1])
     request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
-    with os.fdopen(int(argv[-1]), "w", encoding="utf-8") as stream:
+    with (folder / MESSAGES).open("a", encoding="utf-8") as stream:
         channel = Channel(stream)
         try:
             channel.send("result", work(request, folder, channel))
@@ -80,8 +80,8 @@ def serve(work: Work, argv: list[str]) -> None:
             channel.send("error", (kind + one_line(error), getattr(error, "exit_code", 1)))
 
 
-LOG = "blender.log"
 TICK_SECONDS = 0.2
+LOOK_SECONDS = 0.02  # between looks at the messages
 
 
 @dataclass
@@ -123,40 +123,34 @@ class WorkerProcess:
     """A process of its own with all that it starts. Blender's temporary files, and its log, are in `folder`."""
 
     def __init__(self, command: list[str], request: dict[str, Any], folder: Path, environment: dict[str, str]) -> None:
-        """Starts it; `command` without the folder and the file descriptor for messages. OSError if it cannot."""
+        """Starts it; `command` without the folder. OSError if it cannot."""
         (folder / "request.json").write_text(json.dumps(request), encoding="utf-8")
         self._log = folder / LOG
         self.known: dict[str, Any] = {}
         self.stage = Stage()
         self._pending = b""
-        # Not those of multiprocessing: Debian's Blender 3.4 crashes at its end where that module is imported.
-        self._messages, other_end = (os.fdopen(end, mode, 0) for end, mode in zip(os.pipe(), ("rb", "wb"), strict=True))
-        try:
-            with other_end, self._log.open("wb") as log:
-                self._process = subprocess.Popen(
-                    [*command, str(folder), str(other_end.fileno())],
-                    stdin=subprocess.DEVNULL,
-                    stdout=log,
-                    stderr=subprocess.STDOUT,
-                    pass_fds=[other_end.fileno()],
-                    # Blender reads no preferences of the user.
-                    env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
-                    start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
-                )
-        except OSError:
-            self._messages.close()
-            raise
+        (folder / MESSAGES).touch()
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(
+                [*command, str(folder)],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                # Blender reads no preferences of the user.
+                env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
+                start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
+            )
+        self._messages = (folder / MESSAGES).open("rb")
 
     def result(self, seconds: float = TICK_SECONDS) -> dict[str, Any] | None:
-        """The figures once all are known; None after `seconds` at most, for which it waits. WorkerError if it failed.
+        """The figures once all are known; None after other messages or `seconds` without any. WorkerError if it fails.
 
         `known` has those that are known before, `stage` what is being done.
         """
-        while select.select([self._messages], [], [], seconds)[0]:
-            received = self._messages.read(65536)
-            if not received:
-                raise WorkerError(last_words(self._process.wait(), self._log))
-            *lines, self._pending = (self._pending + received).split(b"\n")
+        until = time.monotonic() + seconds
+        while True:
+            code = self._process.poll()  # before the messages, of which it then has written the last
+            *lines, self._pending = (self._pending + self._messages.read()).split(b"\n")
             for kind, given in map(json.loads, lines):
                 if kind == "error":
                     raise WorkerError(*given)
@@ -166,14 +160,19 @@ class WorkerProcess:
                 self.known |= given
                 if kind == "result":
                     return self.known
-            seconds = 0.0
-        return None
+            if code is not None:
+                raise WorkerError(last_words(code, self._log))
+            if lines or time.monotonic() >= until:
+                return None
+            time.sleep(LOOK_SECONDS)
 
     def end(self) -> None:
         """Ends it at once. After its result nothing is left to do but Blender's own end, which may crash."""
         self._messages.close()
-        with suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGKILL)  # with what it has started itself
+        if hasattr(os, "killpg"):
+            with suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)  # with what it has started itself
+        self._process.kill()
         self._process.wait()
 
 

@@ -165,6 +165,11 @@ class Workers:
             self._say(f"worker {message.get('worker')} is lost" + (f"; {lost} of its tasks begin anew" if lost else ""))
 
 
+def core_count() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def default_workers(tasks: int) -> int:
     """Processes on this machine: one for each core, as far as there is work for them."""
-    return max(1, min(tasks, len(os.sched_getaffinity(0))))
+    return max(1, min(tasks, core_count()))

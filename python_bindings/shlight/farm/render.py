@@ -16,7 +16,7 @@ from typing import Any
 
 from shlight.commands import CommandError, work_folder
 from shlight.farm import files
-from shlight.farm.cluster import Workers, check_dask, connected, default_workers
+from shlight.farm.cluster import Workers, check_dask, connected, core_count, default_workers
 from shlight.farm.frames import PNG, check_out, file_of
 from shlight.farm.one_process import OneProcess
 from shlight.farm.pictures import Picture, Rendered, Source, picture_of
@@ -114,7 +114,7 @@ def render_frames(
                 if scheduler is None:
                     count = default_workers(len(tasks)) if workers is None else workers
                     client.cluster.scale(count)
-                    threads = threads or max(1, len(os.sched_getaffinity(0)) // count)
+                    threads = threads or max(1, core_count() // count)
                 archive = _archive(source, Path(out), stack) if send else None
                 pool = Workers(client, source, threads or 0, progress.say, archive)
             stack.callback(pool.close)
