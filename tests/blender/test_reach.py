@@ -30,6 +30,7 @@ NO_CONTROL = {
     "WorldMistSettings": {"intensity", "height"},
     "Material": {"alpha_threshold", "metallic"},
     "ViewLayer": {"use_freestyle", "use_pass_cryptomatte_accurate", "use_pass_combined", "samples"},
+    "CyclesWorldSettings": {"use_shadows"},
     "CyclesRenderSettings": {
         "rolling_shutter_type",
         "shading_system",  # read to name them, and of scripts
@@ -137,7 +138,7 @@ def owners(studio: Any) -> Iterator[Any]:
 def test_panels_of_cycles_that_have_shlights_settings_are_hidden(studio: Any) -> None:
     """Most of them share one set of engines."""
     assert "SHLIGHT" not in bpy.types.CYCLES_RENDER_PT_sampling.COMPAT_ENGINES
-    assert "SHLIGHT" in bpy.types.CYCLES_RENDER_PT_override.COMPAT_ENGINES
+    assert "SHLIGHT" in bpy.types.CYCLES_RENDER_PT_filter.COMPAT_ENGINES
 
 
 def test_properties_that_are_read_have_a_control(studio: Any) -> None:

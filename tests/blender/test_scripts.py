@@ -101,7 +101,10 @@ def test_scripts(studio: Any, tmp_path: Path, runs: bool) -> None:
     assert (np.ptp(references[0][:SIDE, : SIDE * len(BODIES)]) > 1.0) == runs
     for number, (case, _) in enumerate(listed):
         own = error[:SIDE, SIDE * number :][:, :SIDE]
-        assert own.max() <= (3e-4 if "snoise" in case.node else 1e-5 if "P/" in case.node else 1e-6), case.node
+        bounds = {"snoise": 3e-4, "P/": 1e-5, "tan(": 2e-5}
+        if bpy.app.version >= (5, 2, 0):  # its functions are rounded otherwise, which the loop's steps multiply
+            bounds |= {"for (": 1e-2}
+        assert own.max() <= max((bound for text, bound in bounds.items() if text in case.node), default=1e-6), case.node
 
 
 def test_report_of_scripts(studio: Any, tmp_path: Path) -> None:

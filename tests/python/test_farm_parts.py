@@ -8,6 +8,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ import shlight
 from shlight import images
 from shlight.farm import Outcome, Picture, Rendered, command, files, parse_frames
 from shlight.farm.frames import file_of
-from shlight.farm.pictures import boxes_of
+from shlight.farm.pictures import boxes_of, picture_of
 from shlight.farm.tls import is_loopback
 
 PIXELS = np.random.default_rng(1).random((100, 130, 5), dtype=np.float32)
@@ -41,6 +42,14 @@ def test_tiles_cover_a_picture_once() -> None:
         seen[box[1] : box[3], box[0] : box[2]] += 1
     assert (seen == 1).all()
     assert len(boxes_of((16384, 4096), None)) == 64
+
+
+def test_what_decides_about_pixels_is_in_a_files_key() -> None:
+    source: Any = SimpleNamespace(key="scene", size=(130, 100))
+    other: Any = SimpleNamespace(key="other scene", size=(130, 100))
+    asked = [(source, 1, "", None), (other, 1, "", None), (source, 2, "", None), (source, 1, "R", None)]
+    asked.append((source, 1, "", 64))
+    assert len({picture_of(own, frame, view, Path("x.exr"), tile).key for own, frame, view, tile in asked}) == 5
 
 
 @pytest.mark.parametrize("tile", [0, 64])

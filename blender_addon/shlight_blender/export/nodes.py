@@ -295,10 +295,19 @@ class TreeReader:
         self._inputs(asked.source).remark("its links run in a circle; 0 is used")
         return number(0.0)
 
+    def _read(self, source: Origin) -> Varying | Shader | None:
+        """What a node's output gives; None if it is not known. Later versions of Blender have more kinds of nodes."""
+        inputs, read = self._inputs(source), self.nodes.get(source.node.type)
+        try:
+            return None if read is None else read(inputs)
+        except KeyError as unknown:
+            inputs.remark(f"{unknown} is not known")
+            return None
+
     def _read_value(self, asked: Asked) -> Expression:
         source, socket, _ = asked
-        inputs, read = self._inputs(source), self.nodes.get(source.node.type)
-        if read is not None and not isinstance(found := read(inputs), Shader):
+        inputs, found = self._inputs(source), self._read(source)
+        if found is not None and not isinstance(found, Shader):
             return found if isinstance(found, Value | Vector) else _constant(found)
         fallback = own_value(source.socket)
         constants = [value.constant for value in (fallback if isinstance(fallback, Vector) else (fallback,))]
@@ -309,11 +318,11 @@ class TreeReader:
 
     def _read_shader(self, asked: Asked) -> Shader:
         source = asked.source
-        inputs, read = self._inputs(source), self.nodes.get(source.node.type)
+        inputs = self._inputs(source)
         if source.output.type != "SHADER":
             # A value where a shader is asked for is light of that colour.
             return nodes.emission(color(self._find(asked._replace(is_shader=False))))
-        if read is not None and isinstance(found := read(inputs), Shader):
+        if isinstance(found := self._read(source), Shader):
             return found
         if "Color" not in source.node.inputs:
             inputs.remark(f"{_kind(source.node)} is not supported; drawn black", Effect.THING)

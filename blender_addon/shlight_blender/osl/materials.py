@@ -23,7 +23,16 @@ def problem_of_lamp(lamp: Any) -> str:
     """Why a lamp's light cannot be put into materials, "" if it can."""
     if lamp.data.type != "POINT":
         return "only point lamps are supported"
-    return "lamps with nodes are not supported" if uses_nodes(lamp.data) else ""
+    return "" if not uses_nodes(lamp.data) or _is_plain(lamp.data) else "lamps with nodes are not supported"
+
+
+def _is_plain(data: Any) -> bool:
+    """Whether the nodes of a lamp leave its light as it is, as those that all lamps have in Blender 5.2 do at first."""
+    output = data.node_tree.get_output_node("CYCLES")
+    node = output.inputs["Surface"].links[0].from_node if output and output.inputs["Surface"].links else None
+    if node is None or node.type != "EMISSION" or any(socket.is_linked for socket in node.inputs):
+        return False
+    return (*node.inputs["Color"].default_value[:3], node.inputs["Strength"].default_value) == (1.0, 1.0, 1.0, 1.0)
 
 
 def surface_nodes(material: Any) -> list[Any]:

@@ -36,6 +36,7 @@ INCLUDED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_surface",
+    "VIEWLAYER_PT_override",
     "VIEWLAYER_PT_layer_passes",
     "VIEWLAYER_PT_layer_passes_aov",
     "VIEWLAYER_PT_layer_passes_cryptomatte",

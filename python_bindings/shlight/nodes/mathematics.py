@@ -157,7 +157,7 @@ VECTOR_MATH: dict[str, Callable[[Vector, Vector, Vector, Value], Vector | Value]
         name: _each(name)
         for name in (
             "ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "SNAP", "FLOOR", "CEIL", "MODULO", "WRAP",
-            "ABSOLUTE", "POWER", "SIGN", "MINIMUM", "MAXIMUM", "SINE", "COSINE", "TANGENT",
+            "ABSOLUTE", "POWER", "SIGN", "MINIMUM", "MAXIMUM", "SINE", "COSINE", "TANGENT", "ROUND",
         )
     },
     "FRACTION": _each("FRACT"),
