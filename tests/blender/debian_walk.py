@@ -100,6 +100,18 @@ def light():
         lamp.energy *= chance.choice([0.8, 1.25])
 
 
+class SHLIGHT_OT_probe(bpy.types.Operator):
+    bl_idname = "shlight.probe"
+    bl_label = "Probe"
+
+
+def reload():
+    """Raises where Blender lets no script write, which would leave its own scripts half registered."""
+    bpy.utils.register_class(SHLIGHT_OT_probe)
+    bpy.utils.unregister_class(SHLIGHT_OT_probe)
+    bpy.ops.script.reload()
+
+
 def mix():
     """Draws a slider of the light mixer, or presses one of its buttons."""
     if not ready():
@@ -142,7 +154,7 @@ STEP = {
     "disable": (3, lambda: bpy.ops.preferences.addon_disable(module=ADDON)),
     "enable": (5, lambda: bpy.ops.preferences.addon_enable(module=ADDON)),
     "disable Cycles": (1, lambda: bpy.ops.preferences.addon_disable(module="cycles")),
-    "reload": (2, lambda: bpy.ops.script.reload()),
+    "reload": (2, reload),
     "wait": (4, lambda: None),
 }
 plan = chance.choices(list(STEP), [weight for weight, _ in STEP.values()], k=int(STEPS))

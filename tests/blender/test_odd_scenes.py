@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 from shlight.images import write_png
+from shlight.nodes.textures import texture_pixels
 from shlight_blender import frame, record
+from shlight_blender.export.images import KEPT_EXPORTS, TextureCache
 
 
 def test_a_picture_larger_than_the_memory_is_an_error(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,6 +83,17 @@ def test_what_is_missing_of_a_library(studio: Any, missing: str) -> None:
     studio.scene.shlight.pixel_samples = 64
     studio.compare()
     assert ["green.png' is missing" in line for line in studio.messages()] == [True] * (missing == "texture")
+
+
+def test_textures_are_kept_while_exports_ask_for_them() -> None:
+    cache = TextureCache()
+    cache.get(("dropped",), lambda: texture_pixels(np.ones((4, 4, 3), dtype=np.float32)))
+    cache.get(("kept",), lambda: texture_pixels(np.ones((2, 2, 3), dtype=np.float32)))
+    both = cache.size_in_bytes
+    for _ in range(KEPT_EXPORTS + 1):
+        cache.begin_export()
+        assert cache.get(("kept",), lambda: None) is not None
+    assert 0 < cache.size_in_bytes < both / 2
 
 
 @pytest.mark.slow
