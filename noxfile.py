@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Tests of the add-on with versions of Blender beside that of .venv; `./dev test --all` runs them."""
+"""Tests that take long, which `./dev test --all` runs: of the add-on with versions of Blender beside that of .venv, and
+of the core and the package with fuzz targets and a sanitizer."""
 
 from __future__ import annotations
 
+import os
+import shutil
 from pathlib import Path
 
 import nox
@@ -15,21 +18,80 @@ LAMPS = [f"tests/blender/test_{name}.py" for name in ("light_matrix", "lights_of
 LEFT_OUT = [f"tests/blender/test_{name}.py" for name in ("debian_blender", "preview", "survey", "examples")]
 
 
+def install(session: nox.Session, *packages: str) -> None:
+    """These, and what the package, its tests and its build need."""
+    project = nox.project.load_toml("pyproject.toml")
+    needed = [*project["project"]["dependencies"], *project["project"]["optional-dependencies"]["test"]]
+    session.install(*packages, "matplotlib", *needed, *project["build-system"]["requires"])
+
+
+def build(session: nox.Session, folder: str, options: list[str], *targets: str) -> None:
+    executable = f"-DPython_EXECUTABLE={session.virtualenv.location}/bin/python"
+    session.run("cmake", *options, executable, external=True, silent=True)
+    session.run("cmake", "--build", folder, "--target", *targets, external=True)
+
+
 @nox.session(reuse_venv=True)
 @nox.parametrize(("python", "blender", "numpy"), BLENDERS, ids=[blender for _, blender, _ in BLENDERS])
 def blender(session: nox.Session, blender: str, numpy: str) -> None:
     """The tests on lamps in full, the others of the add-on without the slow ones."""
-    project = nox.project.load_toml("pyproject.toml")
-    needed = [*project["project"]["dependencies"], *project["project"]["optional-dependencies"]["test"]]
-    session.install(f"bpy=={blender}.*", numpy, "matplotlib", *needed, *project["build-system"]["requires"])
+    install(session, f"bpy=={blender}.*", numpy)
     if session.python != "3.11":  # whose module is that of .venv
-        build = f"build/blender-{blender}"
-        executable = f"-DPython_EXECUTABLE={session.virtualenv.location}/bin/python"
-        options = ["-DCMAKE_BUILD_TYPE=Release", "-DSHLIGHT_ALL_TARGETS=OFF"]
-        session.run("cmake", "-S", ".", "-B", build, "-G", "Ninja", *options, executable, external=True)
-        session.run("cmake", "--build", build, "--target", "_core", external=True)
+        options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DSHLIGHT_ALL_TARGETS=OFF"]
+        build(session, f"build/blender-{blender}", ["-S", ".", "-B", f"build/blender-{blender}", *options], "_core")
     path = ":".join(str(ROOT / name) for name in ("python_bindings", "blender_addon", "tools"))
     others = ["-m", "not slow", "tests/blender", *(f"--ignore={name}" for name in LAMPS + LEFT_OUT)]
     zipped = ["tests/extension/test_dist.py::test_the_zip_is_an_extension"]
     for tests in (LAMPS, others, zipped):
         session.run("python", "-m", "pytest", "-q", *tests, *session.posargs, env={"PYTHONPATH": path})
+
+
+FUZZ_SECONDS = 60  # of each target
+FUZZ_OPTIONS = ["-timeout=60", "-max_len=1024", "-len_control=0", "-print_final_stats=1"]
+# Python has to load these before all else.
+RUNTIMES = ["libclang_rt.asan-x86_64.so", "libstdc++.so.6"]
+# CPython keeps memory until it ends.
+OPTIONS = {"ASAN_OPTIONS": "detect_leaks=0", "UBSAN_OPTIONS": "print_stacktrace=1"}
+# These bound their address space, of which a sanitizer takes terabytes, measure times or memory, or need Blender.
+NOT_SANITIZED = ["any_argument", "bench", "bench_picture", "cli", "fuzz", "load", "result_memory"]
+
+
+@nox.session(python="3.11", reuse_venv=True)
+def fuzz(session: nox.Session) -> None:
+    """Each target of tests/fuzz, from inputs that it found before; `nox -s fuzz -- 600 polygons`: one for longer."""
+    install(session)
+    seconds, *names = session.posargs or [str(FUZZ_SECONDS)]
+    build(session, "build/asan", ["--preset", "asan"], "shlight_fuzzers")
+    for name in names or sorted(path.stem for path in (ROOT / "tests/fuzz").glob("*.cpp")):
+        corpus = ROOT / "build/fuzz" / name
+        corpus.mkdir(parents=True, exist_ok=True)
+        options = [f"-max_total_time={seconds}", f"-artifact_prefix={corpus}-", *FUZZ_OPTIONS]
+        session.run(f"build/asan/tests/fuzz/fuzz_{name}", *options, str(corpus), external=True)
+
+
+def linked_package(folder: Path) -> Path:
+    """The sources of the package and of the tools, as links, beside the modules of another build."""
+    package = folder / "package"
+    shutil.rmtree(package, ignore_errors=True)
+    for source, module in ((ROOT / "python_bindings/shlight", "_core"), (ROOT / "tools/shlight_tools", "_methods")):
+        links = package / source.name
+        shutil.copytree(source, links, copy_function=os.symlink, ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+        for library in (folder / "modules").glob(f"{module}.*.so"):
+            (links / library.name).symlink_to(library)
+    return package
+
+
+@nox.session(python="3.11", reuse_venv=True)
+def sanitizer(session: nox.Session) -> None:
+    """The core's tests and the quick ones of Python, with those for addresses and undefined behaviour."""
+    install(session)
+    folder = ROOT / "build/asan"
+    build(session, str(folder), ["--preset", "asan"], "all", "shlight_tests")
+    session.run("ctest", "--preset", "asan", env=OPTIONS, external=True)
+    found = [session.run("clang++", f"-print-file-name={name}", external=True, silent=True) for name in RUNTIMES]
+    preloaded = ":".join(str(path).strip() for path in found)
+    path = f"{linked_package(folder)}:{ROOT}/blender_addon"
+    env = {**OPTIONS, "LD_PRELOAD": preloaded, "PYTHONPATH": path}
+    left_out = [f"--ignore=tests/python/test_{name}.py" for name in NOT_SANITIZED]
+    left_out += ["-k", "not test_an_interrupt_ends_a_long_call"]  # it measures time too
+    session.run("python", "-m", "pytest", "-q", "-m", "not slow", "tests/python", *left_out, *session.posargs, env=env)

@@ -207,6 +207,15 @@ TEST(Polygon, HasNoLightInThePlaneOfTheShadingPointAndIsRefusedOnIt) {
     }
 }
 
+/// Granted to be off the plane of the others, which is not seen edge-on.
+TEST(Polygon, WithAVertexAtTheShadingPointIsRefused) {
+    for (const double off : {0x1p-22, 0x1p-14}) {
+        const Vertices vertices = {{2, 0, 2}, {2, 2, 2}, {off, 0, 0}, {0, 0, 0}};
+        expect_one_rule_in_plane<double>(vertices, true, true);
+        expect_one_rule_in_plane<float>(vertices, true, false);
+    }
+}
+
 /// A room's floor, however little below a point on it.
 TEST(Polygon, JustBelowTheHorizonIsUnseen) {
     for (const double below : {1e-12, 1e-9, 1e-6}) {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "error_message.h"
 #include "render_scenes.h"
 
 namespace shlight {
@@ -63,6 +64,16 @@ TEST(RenderCamera, ClippingIsByDepthAlongTheAxis) {
         EXPECT_EQ(alpha({1.999, 100}, projection), 1);
         EXPECT_EQ(alpha({2.001, 100}, projection), 0);
     }
+}
+
+/// An axis whose square underflows has no direction.
+TEST(RenderCamera, AxesWithoutLengthAreRefused) {
+    glm::dmat4 to_world(1);
+    to_world[0] *= 1e-160;
+    EXPECT_EQ(error_message([&] { Camera(to_world, 1.0); }).find("to_world"), 0U);
+    to_world[0] = glm::dvec4(0, -std::numeric_limits<double>::min(), 0, 0);
+    to_world[1] = glm::dvec4(1, 0, 0, 0);
+    EXPECT_EQ(error_message([&] { Camera(to_world, 1.0); }).find("to_world"), 0U);
 }
 
 TEST(RenderCamera, CoverageIsTheShareOfThePixel) {

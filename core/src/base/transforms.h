@@ -3,7 +3,9 @@
 // Affine transforms as 4×4 matrices.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <glm/mat3x3.hpp>
@@ -44,10 +46,15 @@ inline void check_transform(const char* name, const glm::dmat4& matrix) {
             reject(std::string(name) + " is not affine: its last row must be 0 0 0 1");
         }
     }
-    // The determinant ÷ the product of the axes' lengths measures flatness independently of scale.
+    // The determinant ÷ the product of the axes' lengths measures flatness independently of scale. Axes whose squares
+    // vanish have no length.
     const glm::dmat3 linear(matrix);
-    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-    if (!(std::abs(glm::determinant(linear)) > 1e-9 * lengths)) {
+    double lengths = 1, least = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        lengths *= glm::length(linear[axis]);
+        least = std::min(least, glm::dot(linear[axis], linear[axis]));
+    }
+    if (!(least >= std::numeric_limits<double>::min() && std::abs(glm::determinant(linear)) > 1e-9 * lengths)) {
         reject(std::string(name) + " is degenerate: it flattens space");
     }
 }

@@ -203,7 +203,7 @@ void RecordGatherer::shade(std::size_t first, Shader& shader) {
         shader.light[shader.hits.in_apart[hit]].radiance += shader.hits.radiance[hit];
     }
     const std::size_t parts = paths_.stored->parts;
-    Rgb* light = &shaded_light_[first * light_count_];
+    Rgb* light = shaded_light_.data() + first * light_count_;
     for (std::size_t i = 0; i < count * paths_.max_bounces; ++i, light += parts) {
         light[0] = shader.light[i].radiance;
         for (std::uint32_t group = 0; group + 1 < parts; ++group) {
@@ -232,7 +232,7 @@ void RecordGatherer::add(const Cell& cell) {
 void RecordGatherer::spread(const Cell& cell) {
     const End& first = ends_[cell.first];
     const Rgb* light =
-        first.is_own ? &shaded_light_[cell.first_shaded * light_count_] : known_->look_up(first.cell).data();
+        first.is_own ? shaded_light_.data() + cell.first_shaded * light_count_ : known_->look_up(first.cell).data();
     for (std::size_t end = cell.first; end < cell.first + cell.count; ++end) {
         light_[ends_[end].ray] = light;
     }

@@ -54,7 +54,7 @@ void SurfacePasses::add(const CameraSurfaces& surfaces, std::size_t rays, std::s
         if (surface.source != RaySource::camera) {
             continue;
         }
-        double* pixel = &sums[surface.ray / rays_per_pixel * layout_->stride()];
+        double* pixel = sums.data() + surface.ray / rays_per_pixel * layout_->stride();
         RayState& ray = rays_[surface.ray];
         const Rgb transparency = surfaces.transparency(surface);
         const double share = mean(surface.throughput);
@@ -218,7 +218,7 @@ void SurfacePasses::write_middles(const CameraSurfaces& surfaces, std::size_t ra
             continue;
         }
         ray.found = true;
-        float* pixel = &values[surface.ray * layout_->stride()];
+        float* pixel = values.data() + surface.ray * layout_->stride();
         const auto write = [&](Pass kind, double value) {
             if (has(kind)) {
                 *at(kind, pixel) = static_cast<float>(value);

@@ -51,8 +51,8 @@ void ShadowBudget::find_points(const UnshadowedLight& light) {
     }
     std::ranges::fill(of_points_, 0.0F);
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        const float* value = &values[lobe * size];
-        const float* weight = &weights_[3 * lobe * size];
+        const float* value = values.data() + lobe * size;
+        const float* weight = weights_.data() + 3 * lobe * size;
         for (std::size_t point = 0; point < size; ++point) {
             of_points_[point] += std::abs(value[point] * strength.x) * weight[point] +
                                  std::abs(value[point] * strength.y) * weight[size + point] +

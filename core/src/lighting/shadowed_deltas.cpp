@@ -76,7 +76,7 @@ void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& 
         const std::size_t point = pixel.first_point + p;
         const float cosine = points.cos_theta_o[point];
         const std::span<const Lobe> lobes = materials_[points.material[point]].lobes();
-        float* own = &point_brightness_[p * range.count];
+        float* own = point_brightness_.data() + p * range.count;
         lights_->see(range, points.frame[point], points.error[point], views_);
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             float* of_lobe = values(p, lobe, range);
@@ -158,7 +158,7 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
     }
     std::size_t begin = 0;
     for (const SampledSource& sampled : sampled_) {
-        const std::span<const ShadowSample> samples(&samples_[begin], sampled.end - begin);
+        const std::span<const ShadowSample> samples(samples_.data() + begin, sampled.end - begin);
         begin = sampled.end;
         const std::size_t light = range.begin + sampled.light;
         const Rgb strength = lights_->strength(light);

@@ -80,10 +80,10 @@ class ShadowedDeltas {
     std::uint64_t count_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range) const;
 
     float* values(std::size_t point_in_pixel, std::size_t lobe, const DeltaRange& range) {
-        return &values_[(point_in_pixel * lobe_stride_ + lobe) * range.count];
+        return values_.data() + (point_in_pixel * lobe_stride_ + lobe) * range.count;
     }
     const float* values(std::size_t point_in_pixel, std::size_t lobe, const DeltaRange& range) const {
-        return &values_[(point_in_pixel * lobe_stride_ + lobe) * range.count];
+        return values_.data() + (point_in_pixel * lobe_stride_ + lobe) * range.count;
     }
 
     ShadowTracer* tracer_;

@@ -153,7 +153,7 @@ LightRadiance UnshadowedRadiance::light(std::size_t index) const {
 void UnshadowedRadiance::add(const ShadingPoints& points, std::span<const std::uint32_t> some,
                              std::span<const std::uint32_t> numbers, const Light& light, std::size_t light_index,
                              std::size_t lobe, RenderReport& report) {
-    float* values = &values_[places_[light_index].begin + lobe * point_count_];
+    float* values = values_.data() + places_[light_index].begin + lobe * point_count_;
     const bool even = std::holds_alternative<EvenProfile>(traits_of(light).profile);
     if (const int order = batch_.only_order(); order > 0 && even) {
         std::uint64_t lit = 0;

@@ -65,7 +65,8 @@ DeltaLights::DeltaLights(std::span<const Light> lights) : lights_(lights) {
 }
 
 DeltaArrays DeltaLights::arrays(const DeltaRange& range) const {
-    return {&x_[range.begin], &y_[range.begin], &z_[range.begin], &w_[range.begin], range.count};
+    const std::size_t first = range.begin;
+    return {x_.data() + first, y_.data() + first, z_.data() + first, w_.data() + first, range.count};
 }
 
 double DeltaLights::factor(std::size_t i, const Vec3d& way) const {
@@ -97,7 +98,7 @@ void DeltaLights::reflect(const DeltaRange& range, const DeltaViews& views, cons
     const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
     // lobe_values() gives 0 for a mirror: it shows a source without extent with probability 0.
     lobe_values(shape, views.x.data(), views.y.data(), views.z.data(), range.count, view, values);
-    const float* lights = &(is_glossy(shape) ? lights_glossy_ : lights_diffuse_)[range.begin];
+    const float* lights = (is_glossy(shape) ? lights_glossy_ : lights_diffuse_).data() + range.begin;
     for (std::size_t i = 0; i < range.count; ++i) {
         values[i] = static_cast<float>(views.irradiance[i] * double{values[i]}) * lights[i];
     }

@@ -44,7 +44,9 @@ class DeltaLights {
     std::uint32_t group(std::size_t i) const { return group_[i]; }
     Rgb strength(std::size_t i) const { return {r_[i], g_[i], b_[i]}; }
     /// Absolute values of the strengths.
-    ColorArrays magnitudes(std::size_t begin) const { return {&abs_r_[begin], &abs_g_[begin], &abs_b_[begin]}; }
+    ColorArrays magnitudes(std::size_t begin) const {
+        return {abs_r_.data() + begin, abs_g_.data() + begin, abs_b_.data() + begin};
+    }
 
     /// Views of a range of sources. error: that of the point's position [m]; sources within twice the error are dark.
     void see(const DeltaRange& range, const ShadingFrame& frame, double error, DeltaViews& views) const;

@@ -109,7 +109,7 @@ class GgxLanes {
         // |ω_i + ω_o| is twice ω_i·h.
         const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
         return with_fresnel(d, hn::Mul(half_distribution(sum, view), visibility),
-                            [&] HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
+                            [&]() HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
     }
 
     /// Density per solid angle at which GgxShape::sample draws this direction.
@@ -122,7 +122,7 @@ class GgxLanes {
     HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
         const auto visibility = hn::Div(hn::Add(cos_i, cos_i), hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i),
                                                                           hn::Mul(cos_i, view.masking)));
-        return with_fresnel(d, visibility, [&] HWY_ATTR { return half.cosine; });
+        return with_fresnel(d, visibility, [&]() HWY_ATTR { return half.cosine; });
     }
 
     /// ∂(f·cos)/∂α as over_ndf() is f·cos, of F = 1; steepness: (h_⊥² - α² h_z²) / (h_⊥² + α² h_z²).
@@ -254,7 +254,7 @@ class MicrofacetLanes {
         const RoundHalf<D> round = {slope2, hn::Div(all(d, 1), view.ggx.alpha2),
                                     hn::NegMulAdd(all(d, 0.5), view.ggx.alpha2, all(d, 1))};
         const auto own = over_ndf_of_others(d, shape_.distribution, round, half.cosine, cos_i, view.ggx.cosine,
-                                            view.masking, [&] HWY_ATTR { return masking(d, view.alpha, cos_i); });
+                                            view.masking, [&]() HWY_ATTR { return masking(d, view.alpha, cos_i); });
         return hn::Mul(fresnel, own);
     }
 
@@ -331,7 +331,7 @@ class StretchedLanes {
                                   all(d, std::sqrt((1 - x2 / 2) * (1 - y2 / 2)))};
         const auto value =
             over_ndf_of_others(d, shape_.distribution, own, half.cosine, cos_i, view.cosine, view.masking,
-                               [&] HWY_ATTR { return masking(d, light_x, light_y, cos_i); });
+                               [&]() HWY_ATTR { return masking(d, light_x, light_y, cos_i); });
         return hn::Mul(fresnel, value);
     }
 

@@ -168,7 +168,7 @@ class PolygonLists {
             whole_[whole] = i;
             cut_[cut] = i;
             whole += is_whole ? 1 : 0;
-            cut += !is_whole & (above > 0) ? 1 : 0;
+            cut += (!is_whole & (above > 0)) ? 1 : 0;
         }
         whole_.resize(whole);
         cut_.resize(cut);

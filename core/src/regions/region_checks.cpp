@@ -95,13 +95,16 @@ bool is_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
     return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn * farthest * glm::length(normal);
 }
 
-/// True for all that is_edge_on, for those of unusual units, and for some others.
+/// True for all that is_edge_on, for those with a vertex at the origin, for those of unusual units, and for some
+/// others.
 bool may_be_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
-    double farthest = 0;
+    double farthest = 0, nearest = std::numeric_limits<double>::max();
     for (const Vec3d& p : v) {
-        farthest = std::max(farthest, glm::dot(p, p));
+        const double square = glm::dot(p, p);
+        farthest = std::max(farthest, square);
+        nearest = std::min(nearest, square);
     }
-    if (!(farthest > kLeastSquare && farthest < 1 / kLeastSquare)) {
+    if (!(nearest > 0 && farthest > kLeastSquare && farthest < 1 / kLeastSquare)) {
         return true;
     }
     const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn);
@@ -179,6 +182,10 @@ void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
     const double far = 2 / (size * std::sqrt(flatness.extent));
     if (vertices.size() > 3 && !flatness.within(kGranted + 8 * epsilon * std::sqrt(3) * far)) {
         reject("vertices: a polygon is not planar");
+    }
+    // A vertex may be off the plane that the others are in, and at the origin where they are not edge-on.
+    if (std::find(vertices.begin(), vertices.end(), Vec3d(0)) != vertices.end()) {
+        reject("vertices: the shading point lies inside a polygon");
     }
     if (is_edge_on(flatness.normal, vertices, epsilon)) {
         const Turns turns = turns_around_origin(flatness.normal, vertices, epsilon);

@@ -16,7 +16,7 @@ namespace {
 /// Maximum number of look-ups along the longer side of a footprint; longer footprints are also blurred across.
 constexpr float kMostProbes = 24;
 /// Texel coordinates beyond this lie further apart than one texel in float.
-constexpr float kFarthest = 1e7F;
+constexpr float kFarthestTexel = 1e7F;
 
 constexpr glm::vec4 kMissing(1, 0, 1, 1);
 
@@ -148,7 +148,7 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     const TexturePixels& pixels = *tile->pixels;
     const glm::vec2 size(pixels.width(), pixels.height());
     const glm::vec2 texels = inside * size;
-    if (!(std::abs(texels.x) < kFarthest && std::abs(texels.y) < kFarthest)) {
+    if (!(std::abs(texels.x) < kFarthestTexel && std::abs(texels.y) < kFarthestTexel)) {
         inside = glm::vec2(0);
     }
     const glm::vec2 varies = varies_along(inside, footprint);
@@ -160,9 +160,10 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     Lookup lookup = {&pixels, inside, 0, 0, glm::vec2(0)};
     const float longest = glm::length(along);
     if (longest > 1) {
-        // Width of the footprint: its area ÷ its longest side.
+        // Width of the footprint: its area ÷ its longest side. It is NaN where a neighbour's coordinate is, and max()
+        // then leaves it out because it comes last.
         const float width = std::abs(along.x * across.y - along.y * across.x) / longest;
-        const float least = std::max({width, longest / kMostProbes, 1.0F});
+        const float least = std::max({1.0F, longest / kMostProbes, width});
         const auto top = static_cast<float>(pixels.level_count() - 1);
         lookup.level = std::isfinite(least) ? std::clamp(std::log2(least), 0.0F, top) : top;
         lookup.probes = std::isfinite(longest) ? static_cast<int>(std::ceil(longest / least)) : 1;

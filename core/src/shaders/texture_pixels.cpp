@@ -12,6 +12,7 @@
 
 #include <hwy/cache_control.h>
 
+#include "base/scene_range.h"
 #include "shaders/shown_rows.h"
 #include "shaders/srgb.h"
 
@@ -42,10 +43,9 @@ const ByteTable& bytes_from_srgb() {
     return table;
 }
 
+/// Sums of numbers within the range of radiance, and what sRGB makes of them, stay finite.
 float finite(float value) {
-    return std::isnan(value)
-               ? 0.0F
-               : std::clamp(value, std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max());
+    return std::isnan(value) ? 0.0F : std::clamp(value, -kBrightest, kBrightest);
 }
 
 constexpr std::uint16_t kSignOfHalf = 0x8000;

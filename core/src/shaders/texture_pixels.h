@@ -86,9 +86,9 @@ class Texels {
 /// A picture with all its levels. Immutable; shared by all its users.
 class TexturePixels {
   public:
-    /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0, and
-    /// infinity the largest number of its type. interpolation, extension: those of the textures; coarser levels are
-    /// means of what they show.
+    /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0;
+    /// floats beyond ±kBrightest become that, and infinite halves the largest one. interpolation, extension: those of
+    /// the textures; coarser levels are means of what they show.
     TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding,
                   TextureInterpolation interpolation, TextureExtension extension);
     TexturePixels(const TexturePixels&) = delete;
