@@ -59,7 +59,9 @@ def has_panorama_settings(lens: Any) -> bool:
 # The Principled BSDF has a specular layer over the diffuse base, or is a plain sum of both.
 PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 # Its inputs that are not supported, with the values at which they do nothing.
-PRINCIPLED_UNSUPPORTED = {"Thin Film Thickness": 0.0} if IS_BLENDER_4 else {"Clearcoat": 0.0}
+PRINCIPLED_UNSUPPORTED: dict[str, float] = {} if IS_BLENDER_4 else {"Clearcoat": 0.0}
+# Cycles' thin films by name of `nodes.principled`.
+THIN_FILM_MODEL: Literal["spectral", "gaussians"] = "spectral" if VERSION >= (5, 0, 0) else "gaussians"
 # Methods of subsurface scattering by Blender's names.
 SUBSURFACE_METHODS: dict[str, Literal["burley", "random_walk", "random_walk_skin"]] = (
     {"BURLEY": "burley", "RANDOM_WALK": "random_walk", "RANDOM_WALK_SKIN": "random_walk_skin"}

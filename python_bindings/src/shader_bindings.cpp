@@ -142,12 +142,14 @@ std::optional<GgxShape> microfacets_of(std::string_view kind, double ior) {
         {{"ggx", Microfacets::ggx},
          {"beckmann", Microfacets::beckmann},
          {"ashikhmin_shirley", Microfacets::ashikhmin_shirley}}};
-    constexpr std::array<std::pair<std::string_view, Fresnel>, 6> kFactors = {{{"", Fresnel::one},
+    constexpr std::array<std::pair<std::string_view, Fresnel>, 8> kFactors = {{{"", Fresnel::one},
                                                                                {"_schlick", Fresnel::schlick},
                                                                                {"_dielectric", Fresnel::dielectric},
                                                                                {"_dip", Fresnel::dip},
                                                                                {"_wide_dip", Fresnel::wide_dip},
-                                                                               {"_narrow_dip", Fresnel::narrow_dip}}};
+                                                                               {"_narrow_dip", Fresnel::narrow_dip},
+                                                                               {"_broad_dip", Fresnel::broad_dip},
+                                                                               {"_linear", Fresnel::linear}}};
     for (const auto& [name, distribution] : kDistributions) {
         if (kind.starts_with(name)) {
             for (const auto& [factor, fresnel] : kFactors) {

@@ -209,7 +209,11 @@ def test_nothing_is_bevelled_or_occluded(studio: Any) -> None:
     ("shader", "inputs", "named"),
     [
         ("ShaderNodeBsdfHair", {}, "Hair BSDF is not supported"),
-        ("ShaderNodeBsdfPrincipled", {"Thin_Film_Thickness": 300.0}, "'Thin Film Thickness' is not supported"),
+        (
+            "ShaderNodeBsdfPrincipled",
+            {"Thin_Film_Thickness": 300.0, "Transmission_Weight": 1.0},
+            "its thin film is not seen from inside of the body",
+        ),
         ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),
     ],

@@ -213,6 +213,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **dict.fromkeys(inspect.signature(Bsdf.principled).parameters, 0.5),
             "several_bounces": False,
             "subsurface_method": "burley",
+            "thin_film_model": "gaussians",
         },
     ),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),

@@ -71,6 +71,8 @@ def fresnel(factor: str, c: Doubles) -> Doubles:
         "_dip": c * (1 - c) ** 6,
         "_wide_dip": c * (1 - c) ** 3,
         "_narrow_dip": c * (1 - c) ** 12,
+        "_broad_dip": c * (1 - c) ** 2,
+        "_linear": 1 - c,
     }[factor]
 
 
@@ -101,7 +103,7 @@ def microfacets(distribution: str, factor: str, alpha: float, light: Doubles) ->
     return np.asarray(fresnel(factor, c) * d * seen / (4 * VIEW[2]))
 
 
-FACTORS = ("", "_schlick", "_dip", "_wide_dip", "_narrow_dip")
+FACTORS = ("", "_schlick", "_dip", "_wide_dip", "_narrow_dip", "_broad_dip", "_linear")
 KINDS = [
     *itertools.product(("beckmann", "ashikhmin_shirley"), FACTORS),
     *itertools.product(("ggx",), FACTORS[3:]),

@@ -7,6 +7,7 @@ from typing import TypedDict
 
 from shlight import nodes
 from shlight.nodes import Shader, Vector
+from shlight.nodes.films import LEAST_THICKNESS
 from shlight.nodes.principled import Distribution, aspect_stretch, stretched
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
@@ -16,6 +17,7 @@ from ..compat import (
     PRINCIPLED_UNSUPPORTED,
     SUBSURFACE_ENTRY_IS_DIFFUSE,
     SUBSURFACE_METHODS,
+    THIN_FILM_MODEL,
 )
 from ..report import Effect
 from .displacement import DISPLACEMENT_NODES
@@ -54,11 +56,36 @@ def _tangent(inputs: NodeInputs) -> Vector:
     return inputs.vector_or("Tangent", around("Z"))
 
 
+class _ThinFilm(TypedDict, total=False):
+    """Arguments of `shlight.nodes` for a thin film."""
+
+    thin_film_thickness: Value
+    thin_film_ior: Value
+
+
+def _thin_film(inputs: NodeInputs) -> _ThinFilm:
+    """None of nodes that have no such inputs, which differ between versions."""
+    if "Thin Film Thickness" not in inputs.node.inputs:
+        return {}
+    return {
+        "thin_film_thickness": inputs.number("Thin Film Thickness"),
+        "thin_film_ior": inputs.number("Thin Film IOR"),
+    }
+
+
+def _remark_film_inside(inputs: NodeInputs, thin: _ThinFilm) -> None:
+    """Reports a film on a transparent body."""
+    thickness = thin["thin_film_thickness"].constant if thin else 0.0
+    if thickness is None or thickness > LEAST_THICKNESS:
+        inputs.remark("its thin film is not seen from inside of the body", Effect.SLIGHT)
+
+
 def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Metallic").constant != 0.0:
         inputs.remark_nothing_reflected()
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_glass("'Transmission Weight'")
+        _remark_film_inside(inputs, _thin_film(inputs))
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
@@ -69,6 +96,8 @@ def _read_layered(inputs: NodeInputs) -> Shader:
         several_bounces=inputs.node.distribution == "MULTI_GGX",
         tangent=_tangent(inputs),
         at=inputs.linked_vector("Normal"),
+        thin_film_model=THIN_FILM_MODEL,
+        **_thin_film(inputs),
         **{name.lower().replace(" ", "_"): value for name, value in given.items()},
     )
 
@@ -226,9 +255,10 @@ def _glossy(inputs: NodeInputs) -> Shader:
 def _metallic(inputs: NodeInputs) -> Shader:
     inputs.remark_nothing_reflected()
     roughness, rest, stretch = inputs.number("Roughness"), _microfacets(inputs), _anisotropy(inputs)
-    if inputs.node.fresnel_type == "F82":
-        return nodes.metallic(inputs.color("Base Color"), inputs.color("Edge Tint"), roughness, **rest, **stretch)
-    return nodes.conductor(inputs.color("IOR"), inputs.color("Extinction"), roughness, **rest, **stretch)
+    by_color = inputs.node.fresnel_type == "F82"
+    made = nodes.metallic if by_color else nodes.conductor
+    facing, edge = ("Base Color", "Edge Tint") if by_color else ("IOR", "Extinction")
+    return made(inputs.color(facing), inputs.color(edge), roughness, **rest, **stretch, **_thin_film(inputs))
 
 
 def _glass(inputs: NodeInputs) -> Shader:
@@ -239,7 +269,9 @@ def _glass(inputs: NodeInputs) -> Shader:
         inputs.remark(f"what goes through is bent by GGX, not by {inputs.node.distribution}", Effect.SLIGHT)
     if inputs.node.type == "BSDF_REFRACTION":
         return nodes.refraction(tint, roughness, ior, at=inputs.linked_vector("Normal"))
-    return nodes.glass(tint, roughness, ior, **_microfacets(inputs))
+    thin = _thin_film(inputs)
+    _remark_film_inside(inputs, thin)
+    return nodes.glass(tint, roughness, ior, **thin, **_microfacets(inputs))
 
 
 def emission(inputs: NodeInputs) -> Shader:

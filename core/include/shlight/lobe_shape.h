@@ -70,7 +70,9 @@ enum class Fresnel {
     dielectric,  ///< max(0, F(ior, cosθ_d) - F(ior, 1)) / (1 - F(ior, 1)): that part by the Fresnel equations
     dip,         ///< cosθ_d (1 - cosθ_d)⁶: reduction by metals' edge tint (Kutz, Hašan & Edmondson 2021)
     wide_dip,    ///< cosθ_d (1 - cosθ_d)³: with narrow_dip and the above it makes up Fresnel's curves of metals
-    narrow_dip   ///< cosθ_d (1 - cosθ_d)¹²
+    narrow_dip,  ///< cosθ_d (1 - cosθ_d)¹²
+    broad_dip,   ///< cosθ_d (1 - cosθ_d)²: with linear and all of the above it makes up curves under thin films
+    linear       ///< 1 - cosθ_d
 };
 
 /// The distribution of microfacets' normals, and their masking.

@@ -54,8 +54,9 @@ struct ShaderOperation {
     std::size_t argument_count = 0, result_count = 0;
     /// Whether the step's `parameter` is the index of a table, an image or a script, which has its own numbers of
     /// arguments and results, or a number below mode_count, which chooses what the operation does; otherwise it must be
-    /// 0.
-    enum class Parameter : std::uint8_t { none, table, image, mode, script } parameter{};
+    /// 0. A table has as many coordinates as the operation has arguments, or, for `rows`, two, of which the second has
+    /// mode_count entries.
+    enum class Parameter : std::uint8_t { none, table, rows, image, mode, script } parameter{};
     std::uint32_t mode_count = 0;
 };
 

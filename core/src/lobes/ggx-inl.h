@@ -40,6 +40,12 @@ template <Fresnel kFresnel, class D>
 HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     const auto one = all(d, 1);
     const auto edge = hn::Sub(one, hn::Min(cosine, one));
+    if constexpr (kFresnel == Fresnel::linear) {
+        return edge;
+    }
+    if constexpr (kFresnel == Fresnel::broad_dip) {
+        return hn::Mul(hn::Mul(edge, edge), hn::Sub(one, edge));
+    }
     if constexpr (kFresnel == Fresnel::schlick) {
         const auto square = hn::Mul(edge, edge);
         return hn::Mul(hn::Mul(square, square), edge);
@@ -78,6 +84,10 @@ HWY_INLINE V<D> fresnel_of(D d, const GgxShape& shape, V<D> cosine) {
             return fresnel_in_lanes<Fresnel::wide_dip>(d, shape.ior, cosine);
         case Fresnel::narrow_dip:
             return fresnel_in_lanes<Fresnel::narrow_dip>(d, shape.ior, cosine);
+        case Fresnel::broad_dip:
+            return fresnel_in_lanes<Fresnel::broad_dip>(d, shape.ior, cosine);
+        case Fresnel::linear:
+            return fresnel_in_lanes<Fresnel::linear>(d, shape.ior, cosine);
         case Fresnel::dielectric:
             return fresnel_in_lanes<Fresnel::dielectric>(d, shape.ior, cosine);
     }
@@ -399,6 +409,8 @@ void with_lanes_of(const GgxShape& shape, const Function& function) {
             return function(GgxLanes<Fresnel::dielectric>(shape));
         case Fresnel::wide_dip:
         case Fresnel::narrow_dip:
+        case Fresnel::broad_dip:
+        case Fresnel::linear:
             return function(MicrofacetLanes(shape));
     }
 }

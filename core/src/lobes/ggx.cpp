@@ -34,6 +34,10 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
             return cosine * std::pow(1 - cosine, 3);
         case Fresnel::narrow_dip:
             return cosine * std::pow(1 - cosine, 12);
+        case Fresnel::broad_dip:
+            return cosine * (1 - cosine) * (1 - cosine);
+        case Fresnel::linear:
+            return 1 - cosine;
         case Fresnel::dielectric: {
             const double head_on = interface_reflectance(1, shape.ior);
             return std::max(0.0, (interface_reflectance(cosine, shape.ior) - head_on) / (1 - head_on));

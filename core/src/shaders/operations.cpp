@@ -12,6 +12,7 @@
 #include "shaders/hash_kernel.h"
 #include "shaders/image_texture.h"
 #include "shaders/script_kernel.h"
+#include "shaders/thin_film.h"
 #include "shaders/voronoi_kernel.h"
 
 namespace shlight {
@@ -184,6 +185,7 @@ constexpr std::array kOperations = {
     Operation{{"footprint2", 4, 4, Parameter::none}, &footprint<2>},
     Operation{{"footprint3", 6, 5, Parameter::none}, &footprint<3>},
     Operation{{"footprint4", 8, 6, Parameter::none}, &footprint<4>},
+    Operation{{"thin_film", kFilmArguments, kFilmResults, Parameter::rows, kFilmRows}, &thin_film},
     Operation{{"script", 0, 0, Parameter::script}, &run_script},
 };
 

@@ -107,6 +107,11 @@ void ShaderProgram::check_operation(const ShaderStep& step, std::uint32_t values
     if (operation.parameter == Parameter::mode && step.parameter >= operation.mode_count) {
         reject("steps: " + name + " has no mode " + std::to_string(step.parameter));
     }
+    if (operation.parameter == Parameter::rows &&
+        (step.parameter >= tables_.size() || tables_[step.parameter].sizes.size() != 2 ||
+         tables_[step.parameter].sizes[1] != operation.mode_count)) {
+        reject("steps: " + name + " has no table of " + std::to_string(operation.mode_count) + " rows");
+    }
     if (operation.parameter == Parameter::table &&
         (step.parameter >= tables_.size() || tables_[step.parameter].sizes.size() != operation.argument_count)) {
         reject("steps: " + name + " has no table with as many coordinates");
@@ -232,7 +237,7 @@ void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const
             for (std::uint32_t i = 0; i < result_count(step); ++i) {
                 results[i] = at(first_value + i, place);
             }
-            const bool has_table = operation.parameter == Parameter::table;
+            const bool has_table = operation.parameter == Parameter::table || operation.parameter == Parameter::rows;
             const bool has_image = operation.parameter == Parameter::image;
             const bool has_script = operation.parameter == Parameter::script;
             operation_loops()[step.operation]({arguments.data(), results.data(), count,

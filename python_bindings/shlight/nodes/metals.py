@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shlight._arrays import checked_flag
+from shlight.nodes import films
+from shlight.nodes.films import film
 from shlight.nodes.inputs import normal, towards_viewer
 from shlight.nodes.principled import (
     EDGE,
@@ -22,8 +24,9 @@ from shlight.nodes.principled import (
     mixed,
     reflecting_normal,
     stretched,
+    sum_of_lobes,
 )
-from shlight.nodes.shader import Lobe, Shader
+from shlight.nodes.shader import Shader
 from shlight.nodes.values import Color, Number, Varying, Vector, clamp, color, dot, maximum, number, vector
 
 # Cosines at which a metal's Fresnel curve is known, and how much each counts.
@@ -43,12 +46,15 @@ def metallic(
     anisotropy: Number = 0.0,
     rotation: Number = 0.0,
     tangent: Vector | None = None,
+    thin_film_thickness: Number = 0.0,
+    thin_film_ior: Number = 1.33,
     at: Vector | None = None,
 ) -> Shader:
     """Blender's Metallic BSDF by its colours: head-on, and the tint at 82° (Kutz, Hašan & Edmondson 2021).
 
     Arguments are clamped to 0 … 1; several_bounces: Multiscatter GGX; tangent: a world vector, needed where anisotropy
-    is not 0, which rotation turns about the normal, in turns. Raises ValueError naming an argument that is not finite.
+    is not 0, which rotation turns about the normal, in turns; thin_film_thickness: [nm]. Raises ValueError naming an
+    argument that is not finite.
     """
     several = _only_of_ggx(several_bounces, distribution)
     f0, tint = (clamped(color(c, name)) for c, name in ((base_color, "base_color"), (edge_tint, "edge_tint")))
@@ -56,7 +62,8 @@ def metallic(
     n = _normal(at)
     stretch = aspect_stretch(r, number(anisotropy, "anisotropy"), rotation, tangent, n)
     r = mean_roughness(r, stretch)
-    lobes = metal_lobes(color(1.0), f0, tint, r, n, several_bounces=several, distribution=distribution)
+    thin = film(thin_film_thickness, thin_film_ior)
+    lobes = metal_lobes(color(1.0), f0, tint, r, n, several_bounces=several, distribution=distribution, thin=thin)
     return Shader(stretched(lobes, stretch))
 
 
@@ -70,13 +77,15 @@ def conductor(
     anisotropy: Number = 0.0,
     rotation: Number = 0.0,
     tangent: Vector | None = None,
+    thin_film_thickness: Number = 0.0,
+    thin_film_ior: Number = 1.33,
     at: Vector | None = None,
 ) -> Shader:
     """Blender's Metallic BSDF by the index of refraction n + ik of each colour: Fresnel's curve for a conductor.
 
     The curve is a sum of five that have lobes; of common metals it is off by 1e-3, and by 4e-3 of the worst n and k.
     ior, extinction: n and k, at least 0; several_bounces: Multiscatter GGX, with the mean of the curve that Cycles
-    estimates; anisotropy, rotation, tangent: as of `metallic`. Raises ValueError naming an argument that is not finite.
+    estimates; anisotropy and the rest: as of `metallic`. Raises ValueError naming an argument that is not finite.
     """
     several = _only_of_ggx(several_bounces, distribution)
     n, k = (
@@ -87,17 +96,23 @@ def conductor(
     stretch = aspect_stretch(r, number(anisotropy, "anisotropy"), rotation, tangent, normal_of_lobes)
     r = mean_roughness(r, stretch)
     own = color(1.0)
+    cosine = clamp(dot(towards_viewer(), normal_of_lobes), 1e-4)
     if several:
         f0, edge = reflectance(1.0, n, k), reflectance(1.0 - EDGE, n, k)
         dip = (mixed(f0, 1.0, EDGE**5) - edge) * (7.0 / EDGE**6)
         mean = clamped(mixed(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))
-        own = bounces(r, clamp(dot(towards_viewer(), normal_of_lobes), 1e-4), mean)
-    known = [reflectance(float(cosine), n, k) for cosine in COSINES]
-    lobes = []
-    for factor, shares in zip(FACTORS, shares_of_known(), strict=True):
-        share = sum((c * float(of) for c, of in zip(known, shares, strict=True)), start=vector(0.0))
-        lobes.append(Lobe(distribution + factor, color(own * share), r * r, normal_of_lobes, several_bounces=several))
-    return Shader(stretched(tuple(lobes), stretch))
+        own = bounces(r, cosine, mean)
+    thin = film(thin_film_thickness, thin_film_ior)
+    if thin is None:
+        known = [reflectance(float(c), n, k) for c in COSINES]
+        curve: dict[str, Vector] = {
+            factor: sum((of * float(share) for of, share in zip(known, shares, strict=True)), start=vector(0.0))
+            for factor, shares in zip(FACTORS, shares_of_known(), strict=True)
+        }
+    else:
+        curve = dict(zip(films.FACTORS, films.film_factors(thin, cosine, r * r, n, k), strict=True))
+    lobes = sum_of_lobes(own, curve, r * r, normal_of_lobes, several_bounces=several, distribution=distribution)
+    return Shader(stretched(lobes, stretch))
 
 
 def reflectance(cosine: float, n: Color, k: Color) -> Color:

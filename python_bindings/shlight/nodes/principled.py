@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 from shlight._arrays import checked_flag, checked_name
 from shlight.nodes import energy
 from shlight.nodes.fabrics import microfibre, microfibre_albedo
+from shlight.nodes.films import FACTORS, Film, FilmModel, film, film_factors, film_passes, unless_thin
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
 from shlight.nodes.subsurface import SubsurfaceMethod, checked_method, subsurface
@@ -177,6 +179,22 @@ def rising_lobes(
     return tuple(lobes)
 
 
+def sum_of_lobes(
+    weight: Vector,
+    parts: Mapping[str, Varying],
+    alpha: Value,
+    at: Vector | None,
+    *,
+    several_bounces: bool,
+    distribution: Distribution,
+) -> tuple[Lobe, ...]:
+    """Lobes that make up a curve, by how much of each Fresnel factor it has."""
+    return tuple(
+        Lobe(distribution + factor, color(weight * part), alpha, at, several_bounces=several_bounces)
+        for factor, part in parts.items()
+    )
+
+
 def _dielectric(
     weight: Vector,
     f0: Color,
@@ -186,6 +204,7 @@ def _dielectric(
     *,
     several_bounces: bool,
     distribution: Distribution = "ggx",
+    thin: Film | None = None,
 ) -> tuple[tuple[Lobe, ...], Color]:
     """Lobes of a dielectric interface, and the share of light that it lets through."""
     alpha = roughness * roughness
@@ -199,12 +218,18 @@ def _dielectric(
         brighter = bounces(roughness, cosine, mean_fresnel)
         own = color(own * brighter)
         dimmed = color(brighter * energy.albedo(roughness, cosine))
-    lobes = (
-        Lobe(distribution, color(own * f0), alpha, at, several_bounces=several_bounces),
-        *rising_lobes(own * (1.0 - f0), ior, alpha, at, several_bounces=several_bounces, distribution=distribution),
-    )
-    reflected = mixed(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
-    return lobes, color(clamp(1.0 - _largest(reflected)))
+    reflected = mixed(f0, 1.0, energy.rise(roughness, cosine, ior))
+    if thin is None:
+        lobes = (
+            Lobe(distribution, color(own * f0), alpha, at, several_bounces=several_bounces),
+            *rising_lobes(own * (1.0 - f0), ior, alpha, at, several_bounces=several_bounces, distribution=distribution),
+        )
+    else:
+        tint = f0 / head_on(thin.below)
+        parts = dict(zip(FACTORS, film_factors(thin, cosine, alpha, thin.below, scale=tint), strict=True))
+        lobes = sum_of_lobes(own, parts, alpha, at, several_bounces=several_bounces, distribution=distribution)
+        reflected = unless_thin(thin, film_factors(thin, cosine, 0.0, thin.below, scale=tint)[0], reflected)
+    return lobes, color(clamp(1.0 - _largest(reflected * dimmed)))
 
 
 def metal_lobes(
@@ -216,22 +241,33 @@ def metal_lobes(
     *,
     several_bounces: bool,
     distribution: Distribution = "ggx",
+    thin: Film | None = None,
 ) -> tuple[Lobe, ...]:
-    """Lobes of a metal: Schlick's curve, less what a tint takes away near 82° (Kutz et al. 2021)."""
+    """Lobes of a metal: Schlick's curve, less what a tint takes away near 82° (Kutz et al. 2021).
+
+    Under a film it has the index that Gulbrandsen 2014, "Artist Friendly Metallic Fresnel", gives it by its reflectance
+    along the normal and that near 82°.
+    """
     alpha = roughness * roughness
     schlick = mixed(f0, 1.0, EDGE**5)
     dip = color(schlick * (7.0 / EDGE**6) * (1.0 - edge_tint))
     own = color(weight * 1.0)
+    cosine = clamp(dot(towards_viewer(), at), 1e-4)
     if several_bounces:
-        cosine = clamp(dot(towards_viewer(), at), 1e-4)
         own = color(own * bounces(roughness, cosine, color(mixed(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
-    parts = {"": own * f0, "_schlick": own * (1.0 - f0), "_dip": -(own * dip)}
-    if dip.constant == (0.0, 0.0, 0.0):
-        del parts["_dip"]
-    return tuple(
-        Lobe(distribution + factor, color(part), alpha, at, several_bounces=several_bounces)
-        for factor, part in parts.items()
-    )
+    parts: dict[str, Vector]
+    if thin is None:
+        parts = {"": f0, "_schlick": 1.0 - f0, "_dip": -dip}
+        if dip.constant == (0.0, 0.0, 0.0):
+            del parts["_dip"]
+    else:
+        facing, edge = (Color(*(minimum(c, 0.999) for c in f0)), clamped(schlick * edge_tint))
+        root = Color(*(sqrt(c) for c in facing))
+        n = mixed(color((1.0 + root) / (1.0 - root)), (1.0 - facing) / (1.0 + facing), edge)
+        square = (facing * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - facing)
+        k = Color(*(sqrt(c) for c in square))
+        parts = dict(zip(FACTORS, film_factors(thin, cosine, alpha, n, k, edge), strict=True))
+    return sum_of_lobes(own, parts, alpha, at, several_bounces=several_bounces, distribution=distribution)
 
 
 def glossy(
@@ -314,12 +350,17 @@ def _interface(
     *,
     several_bounces: bool,
     distribution: Distribution = "ggx",
-) -> Shader:
-    """The reflection of a transparent body's front."""
+    thin: Film | None = None,
+) -> tuple[Shader, Color]:
+    """The reflection of a transparent body's front, and by what a film changes the light that goes through."""
     front = color(weight * (1.0 - backfacing()))
     index = maximum(ior, 1.0 / ior)
-    lobes, _ = _dielectric(front, f0, index, roughness, at, several_bounces=several_bounces, distribution=distribution)
-    return Shader(lobes)
+    several: dict[str, Any] = {"several_bounces": several_bounces, "distribution": distribution}
+    lobes, _ = _dielectric(front, f0, index, roughness, at, thin=thin, **several)
+    passed = color(1.0)
+    if thin is not None:
+        passed = mixed(film_passes(thin, clamp(dot(towards_viewer(), at), 1e-4)), 1.0, backfacing())
+    return Shader(lobes), passed
 
 
 def glass(
@@ -329,20 +370,26 @@ def glass(
     *,
     several_bounces: bool = False,
     distribution: Distribution = "ggx",
+    thin_film_thickness: Number = 0.0,
+    thin_film_ior: Number = 1.33,
     at: Vector | None = None,
 ) -> Shader:
     """A transparent body: Blender's Glass BSDF. It shows what is behind where light bounces.
 
-    What goes through is bent by GGX's microfacets, whatever the distribution.
+    What goes through is bent by GGX's microfacets, whatever the distribution. thin_film_thickness: [nm], of a film
+    outside of the body.
     """
     kind = checked_distribution(distribution)
     c = clamped(color(tint, "tint"))
     r = clamp(number(roughness, "roughness"))
     index = maximum(number(ior, "ior"), 1e-5)
     n = reflecting_normal(normal() if at is None else at)
-    through = Shader(refractions=(Refraction(c, r * r, index, at),))
-    several = {"several_bounces": several_bounces}
-    return _interface(c, color(head_on(index)), index, r, n, **several, distribution=kind) + through
+    thin = film(thin_film_thickness, thin_film_ior)
+    if thin is not None:
+        thin = thin._replace(below=index)
+    several: dict[str, Any] = {"several_bounces": several_bounces, "distribution": kind}
+    front, passed = _interface(c, color(head_on(index)), index, r, n, thin=thin, **several)
+    return front + Shader(refractions=(Refraction(color(c * passed), r * r, index, at),))
 
 
 def refraction(tint: Varying, roughness: Number, ior: Number = 1.5, *, at: Vector | None = None) -> Shader:
@@ -382,14 +429,18 @@ def principled(
     subsurface_ior: Number = 1.4,
     subsurface_anisotropy: Number = 0.0,
     subsurface_method: SubsurfaceMethod = "random_walk",
+    thin_film_thickness: Number = 0.0,
+    thin_film_ior: Number = 1.33,
+    thin_film_model: FilmModel = "spectral",
     several_bounces: bool = False,
     at: Vector | None = None,
 ) -> Shader:
-    """Blender's Principled BSDF, without thin film.
+    """Blender's Principled BSDF.
 
     Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
-    its normal; tangent: a world vector, needed where `anisotropic` is not 0. Raises ValueError naming an argument that
-    is not finite.
+    its normal; tangent: a world vector, needed where `anisotropic` is not 0; thin_film_thickness: [nm];
+    thin_film_model: "spectral", as since Blender 5.0, or before that "gaussians", which approximates colours and has no
+    films on metals. Raises ValueError naming an argument that is not finite.
 
     >>> paint = nodes.principled((0.6, 0.05, 0.02), roughness=0.4, coat_weight=1.0)
     >>> ball = shlight.Scene().add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], bsdf=paint)
@@ -417,6 +468,8 @@ def principled(
     share, turns = number(anisotropic, "anisotropic"), number(anisotropic_rotation, "anisotropic_rotation")
     stretch = aspect_stretch(rough, share, turns, tangent, n, "anisotropic")
     glossy_width = mean_roughness(rough, stretch)
+
+    thin = film(thin_film_thickness, thin_film_ior, thin_film_model)
 
     result = transparent(1.0 - opaque)
     weight = color(opaque)
@@ -446,16 +499,22 @@ def principled(
 
     if metal.constant != 0.0:
         edge = Color(*(minimum(component, 1.0) for component in tint))
-        own_lobes = metal_lobes(weight * metal, f0_of_metal, edge, glossy_width, glossy_normal, several_bounces=several)
+        on_metal = thin if thin_film_model == "spectral" else None
+        own_lobes = metal_lobes(
+            weight * metal, f0_of_metal, edge, glossy_width, glossy_normal, several_bounces=several, thin=on_metal
+        )
         result += Shader(stretched(own_lobes, stretch))
         weight = color(weight * (1.0 - metal))
     through = clamp(number(transmission_weight, "transmission_weight"))
     if through.constant != 0.0:
         f0 = clamped(tint * head_on(index))
         own = color(weight * through)
-        result += _interface(own, f0, index, rough, glossy_normal, several_bounces=several)
+        on_glass = None if thin is None else thin._replace(below=index)
+        front, passed = _interface(own, f0, index, rough, glossy_normal, several_bounces=several, thin=on_glass)
         through_tint = Color(*(sqrt(clamp(component)) for component in base))
-        result += Shader(refractions=(Refraction(color(own * through_tint), rough * rough, index, at),))
+        result += front + Shader(
+            refractions=(Refraction(color(own * through_tint * passed), rough * rough, index, at),)
+        )
         weight = color(weight * (1.0 - through))
     if weight.constant == (0.0, 0.0, 0.0):
         return result
@@ -465,10 +524,13 @@ def principled(
         facing = facing * (2.0 * level)
         root = sqrt(clamp(facing, 0.0, 0.99))
         index = (1.0 + root) / (1.0 - root)
+    is_thinner = number(ior) < 1.0
     index = maximum(index, 1.0 / index)
-    if index.constant != 1.0:
+    if index.constant != 1.0 or thin is not None:
         f0 = clamped(tint * facing)
-        lobes, passed = _dielectric(weight, f0, index, glossy_width, glossy_normal, several_bounces=several)
+        if thin is not None:
+            thin = thin._replace(below=select(is_thinner, 1.0 / index, index))
+        lobes, passed = _dielectric(weight, f0, index, glossy_width, glossy_normal, several_bounces=several, thin=thin)
         result += Shader(stretched(lobes, stretch))
         weight = color(weight * passed)
     if below.constant != 0.0:

@@ -50,8 +50,9 @@ class Lobe:
     # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; one lobe of a Bsdf; "toon" and
     # "glossy_toon", whose alpha is the size and `rest` the smoothness; or microfacets,
     # "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel factor 1, and the same with "_schlick" or "_dielectric" for
-    # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks; with
-    # "stretched_" before it they have two widths: `rest` is alpha across the tangent, and the three of the tangent
+    # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks, and
+    # "_broad_dip" and "_linear" for films; with "stretched_" before it they have two widths: `rest` is alpha across the
+    # tangent, and the three of the tangent
     kind: str | _core.Bsdf
     weight: Color
     alpha: Value | None = None  # roughness², of microfacets; along the tangent, if they have two
