@@ -296,7 +296,7 @@ class TreeReader:
         return number(0.0)
 
     def _read(self, source: Origin) -> Varying | Shader | None:
-        """What a node's output gives; None if it is not known. Later versions of Blender have more kinds of nodes."""
+        """What a node's output gives; None if it is not known, as what later versions of Blender add is not."""
         inputs, read = self._inputs(source), self.nodes.get(source.node.type)
         try:
             return None if read is None else read(inputs)
