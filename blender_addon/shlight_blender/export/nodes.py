@@ -296,7 +296,7 @@ class TreeReader:
         return number(0.0)
 
     def _read(self, source: Origin) -> Varying | Shader | None:
-        """What a node's output gives; None if it is not known, as what later versions of Blender add is not."""
+        """The value or the shader of an output; None of nodes that are not known, as later versions of Blender add them."""
         inputs, read = self._inputs(source), self.nodes.get(source.node.type)
         try:
             return None if read is None else read(inputs)
