@@ -296,7 +296,7 @@ class TreeReader:
         return number(0.0)
 
     def _read(self, source: Origin) -> Varying | Shader | None:
-        """The value or the shader of an output; None of a node that is not known, perhaps of a later version of Blender."""
+        """The value or the shader of an output; None of a node that is not known."""
         inputs, read = self._inputs(source), self.nodes.get(source.node.type)
         try:
             return None if read is None else read(inputs)
