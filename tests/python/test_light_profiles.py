@@ -96,7 +96,7 @@ def test_files_that_are_refused(text: Any) -> None:
 
 
 def test_a_file_as_the_standard_has_it() -> None:
-    own = luminaire("IESNA91\nTILT=NONE\n1 -1 2 3 1 1 2 0 0 0 1 1 1\n0 45 90\n0\n10, 20, 30\n")
+    own = luminaire("IESNA91\nTILT=NONE\n1 -1 2 3 1 1 2 0 0 0 0.5 3 1\n0 45 90\n0\n10, 20, 30\n")
     assert own.heights.tolist() == [0, 45, 90]
     assert own.turns.tolist() == [0, 360]
-    np.testing.assert_allclose(own.watts, [2 * WATTS_PER_CANDELA * np.array([10, 20, 30])] * 2)
+    np.testing.assert_allclose(own.watts, [2 * 0.5 * 3 * WATTS_PER_CANDELA * np.array([10, 20, 30])] * 2)
