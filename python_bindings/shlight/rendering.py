@@ -23,8 +23,6 @@ __all__ = ["RenderResult", "render"]
 Pixels = NDArray[np.float32]
 GROUP = "combined_"  # what the names of light groups begin with among layers
 LIT_PASSES = ("direct", "indirect", "emission", "environment")  # ends of the names of passes that have light
-
-
 LARGEST_FACTOR = 1e10
 
 

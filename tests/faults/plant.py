@@ -147,17 +147,18 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the drawn ones (default 1)")
     parser.add_argument("--folder", type=Path, default=ROOT / "build/faults", help="of the copy (default build/faults)")
     arguments = parser.parse_args()
+    if arguments.random is None:
+        words = arguments.words or [""]
+        faults = [each for each in listed() if any(word in f"{each.file} {each.about}" for word in words)]
+    else:
+        faults = [Fault(*each) for each in draw(ROOT, arguments.random, arguments.seed)]
+    if not faults:
+        parser.error("no listed fault speaks of that")
     copy = Copy(arguments.folder.resolve())
     print("building the copy", flush=True)
     done, output = copy.build()
     if not done:
         sys.exit(output)
-    if arguments.random is None:
-        faults = listed()
-        words = arguments.words
-        faults = [each for each in faults if not words or any(word in f"{each.file} {each.about}" for word in words)]
-    else:
-        faults = [Fault(*each) for each in draw(ROOT, arguments.random, arguments.seed)]
     missed = 0
     for number, fault in enumerate(faults, 1):
         caught = copy.caught_by(fault)

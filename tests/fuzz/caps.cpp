@@ -14,12 +14,10 @@ struct Caps {
 
     template <class T>
     Region<T> draw(Input& input) const {
-        Region<T> region;
         if (input.rarely()) {
-            append(region.numbers, Vec3d(input.vector<T>()));
-            region.numbers.push_back(input.number<T>());
-            return region;
+            return any_region<T>(input, 1, true);
         }
+        Region<T> region;
         const Vec3d axis = input.direction();
         append(region.numbers, input.power_of_two() * axis);
         // Tangent to the horizon from either side, nothing or everything, or nearly so.

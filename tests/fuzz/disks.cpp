@@ -15,16 +15,13 @@ struct Disks {
 
     template <class T>
     Region<T> draw(Input& input) const {
-        Region<T> region;
         if (input.rarely()) {
-            for (int i = 0; i < 3; ++i) {
-                append(region.numbers, Vec3d(input.vector<T>()));
-            }
-            return region;
+            return any_region<T>(input, 3);
         }
         if (input.integer(0, 3) == 0) {
             return facing<T>(input);
         }
+        Region<T> region;
         const Plane plane(input);
         const double unit = input.power_of_two(), thin = input.chance() ? input.uniform(0.1, 1) : input.small(20);
         const double turn = input.uniform(0, std::numbers::pi), lean = input.chance() ? 0 : input.uniform(-1, 1);

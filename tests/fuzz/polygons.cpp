@@ -15,14 +15,12 @@ struct Polygons {
 
     template <class T>
     Region<T> draw(Input& input) const {
-        Region<T> region;
         if (input.rarely()) {
+            Region<T> region = any_region<T>(input, corners);
             region.may_cross = corners > 3;
-            for (std::size_t i = 0; i < corners; ++i) {
-                append(region.numbers, Vec3d(input.vector<T>()));
-            }
             return region;
         }
+        Region<T> region;
         const Plane plane(input);
         const double unit = input.power_of_two(), thin = input.chance() ? 1 : input.small(30);
         const bool repeats = input.rarely();

@@ -35,6 +35,19 @@ void append(std::vector<T>& numbers, const Vec3d& v) {
     numbers.insert(numbers.end(), {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)});
 }
 
+/// A region of any numbers: vectors, and at most one number after them.
+template <class T>
+Region<T> any_region(Input& input, std::size_t vectors, bool has_number = false) {
+    Region<T> region;
+    for (std::size_t i = 0; i < vectors; ++i) {
+        append(region.numbers, Vec3d(input.vector<T>()));
+    }
+    if (has_number) {
+        region.numbers.push_back(input.number<T>());
+    }
+    return region;
+}
+
 /// The vectors at a place of all regions.
 template <class T>
 std::vector<Vec3<T>> vectors(std::span<const Region<T>> regions, std::size_t index) {

@@ -14,12 +14,10 @@ struct Spheres {
 
     template <class T>
     Region<T> draw(Input& input) const {
-        Region<T> region;
         if (input.rarely()) {
-            append(region.numbers, Vec3d(input.vector<T>()));
-            region.numbers.push_back(input.number<T>());
-            return region;
+            return any_region<T>(input, 1, true);
         }
+        Region<T> region;
         const double unit = input.power_of_two(), sine = input.chance() ? input.uniform(0, 1) : input.small(12);
         append(region.numbers, unit * input.direction());
         const double distance = glm::length(Vec3d(vector_at(region, 0))), height = std::abs(region.numbers[2]);

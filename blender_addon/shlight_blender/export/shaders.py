@@ -83,9 +83,10 @@ def _remark_film_inside(inputs: NodeInputs, thin: _ThinFilm) -> None:
 def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Metallic").constant != 0.0:
         inputs.remark_nothing_reflected()
+    thin = _thin_film(inputs)
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_glass("'Transmission Weight'")
-        _remark_film_inside(inputs, _thin_film(inputs))
+        _remark_film_inside(inputs, thin)
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
@@ -97,7 +98,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
         tangent=_tangent(inputs),
         at=inputs.linked_vector("Normal"),
         thin_film_model=THIN_FILM_MODEL,
-        **_thin_film(inputs),
+        **thin,
         **{name.lower().replace(" ", "_"): value for name, value in given.items()},
     )
 

@@ -524,12 +524,11 @@ def principled(
         facing = facing * (2.0 * level)
         root = sqrt(clamp(facing, 0.0, 0.99))
         index = (1.0 + root) / (1.0 - root)
-    is_thinner = number(ior) < 1.0
     index = maximum(index, 1.0 / index)
     if index.constant != 1.0 or thin is not None:
         f0 = clamped(tint * facing)
         if thin is not None:
-            thin = thin._replace(below=select(is_thinner, 1.0 / index, index))
+            thin = thin._replace(below=select(number(ior) < 1.0, 1.0 / index, index))
         lobes, passed = _dielectric(weight, f0, index, glossy_width, glossy_normal, several_bounces=several, thin=thin)
         result += Shader(stretched(lobes, stretch))
         weight = color(weight * passed)
