@@ -305,10 +305,11 @@ void bind_render(py::module_& m) {
             "passes", [](const Report& r) { return r.core.passes; }, "Passes over the picture or some of its pixels.")
         .def_property_readonly(
             "noise", [](const Report& r) { return r.core.noise; },
-            "Root mean square of the pixels' estimated errors, relative as noise_threshold; of a single pass 0.")
+            "Root mean square of the pixels' estimated errors, relative as noise_threshold; of a single pass 0, as in "
+            "on_update until most pixels have rays that are kept.")
         .def_property_readonly(
             "seconds_left", [](const Report& r) { return r.core.seconds_left; },
-            "Time that the render will probably go on; 0 when it has ended.")
+            "Time that the render will probably go on; 0 when it has ended, or when nothing is known of it yet.")
         .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
         .def_readonly("dark", &Report::dark, "Why the picture is black, as far as light is missing; else empty.")
         .def_property_readonly(

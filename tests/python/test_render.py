@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import threading
@@ -191,7 +192,7 @@ def test_the_picture_as_it_stands() -> None:
     assert report.passes == 2
     np.testing.assert_array_equal(image, shown[-1][0])
     assert not np.array_equal(image, shown[0][0])
-    assert 0 < shown[-1][1].noise < 1
+    assert 0 < report.noise < 1
     assert shown[-1][1].seconds_left >= 0
     again = shlight.render(lit_floor(), 48, 32, threads=1, on_update=lambda _, seen: seen.passes < 2, max_bounces=0)
     np.testing.assert_array_equal(image, again)
@@ -208,6 +209,21 @@ def test_no_time_is_left_in_the_end() -> None:
 
     shlight.render(lit_floor(), 48, 32, on_update=keep, max_bounces=0)
     assert max(left) > left[-1] == 0
+
+
+def test_the_noise_that_is_told_goes_down() -> None:
+    scene = lit_floor()
+    scene.add_mesh([[-1, -0.5, 0.3], [1, -0.5, 0.3], [0, 1, 0.6]], [[0, 1, 2]], bsdf=shlight.Bsdf.lambert(0.5))
+    told: list[float] = []
+
+    def keep(_: Any, report: shlight.RenderReport) -> bool:
+        told.append(report.noise)
+        return True
+
+    shlight.render(scene, 96, 64, on_update=keep, max_bounces=2)
+    known = [noise for noise in told if noise > 0]
+    assert len(known) > 3
+    assert all(after <= 4 / 3 * before for before, after in itertools.pairwise(known))
 
 
 MESH_ERRORS: dict[str, Any] = {

@@ -27,10 +27,11 @@ struct RenderReport {
     std::uint64_t shadow_rays = 0;
     std::uint64_t records = 0;  ///< of light that bounces, which were gathered
     std::uint32_t passes = 0;   ///< over the picture or some of its pixels, that have ended
-    /// Root mean square over the pixels of the estimated errors, see PixelSampling::noise_threshold.
+    /// Root mean square over the pixels of the estimated errors, see PixelSampling::noise_threshold; 0
+    /// while most pixels have no rays that are kept.
     double noise = 0;
     double seconds = 0;
-    double seconds_left = 0;                                   ///< of what is known to be left to do
+    double seconds_left = 0;  ///< that are probably left; 0 while nothing is known of them
     std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
 
     /// Adds what is a sum over parts of the work.

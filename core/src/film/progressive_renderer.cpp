@@ -33,6 +33,13 @@ constexpr double kUpdateShare = 0.25;
 constexpr double kLeastUpdateInterval = 0.05;
 constexpr double kMostUpdateInterval = 0.25;
 constexpr double kShowTimes = 10;
+/// Seconds per ray of those that refine a pixel ÷ those per ray of the first pass, where that has one ray for each.
+constexpr double kLaterShare = 0.5;
+/// Seconds per ray with light that bounces ÷ those without, and rays ÷ the least number of them, as is usual.
+constexpr double kBounceTimes = 2;
+constexpr double kUsualRays = 2;
+/// Share of the pixels that have no rays yet but ones that others replace, above which little is known of their noise.
+constexpr double kUnknownShare = 0.5;
 
 }  // namespace
 
@@ -46,6 +53,7 @@ ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refi
       batch_samples_(picture.lighting.batch_size()),
       start_(start),
       refinement_(std::move(refinement)),
+      time_left_(kUsualRays * refinement_.rays_left(), refinement_.has_preview() ? kLaterShare : 1),
       stored_(&stored),
       batches_([this] { return PixelBatch(*picture_, picture_->paths(bounces_ ? stored_ : nullptr)); }) {}
 
@@ -63,11 +71,12 @@ void ProgressiveRenderer::run(const Watch& caller) {
         add_bounces(has_bounced, caller);
         goes_on = first_pass(caller, time_limit());
     }
+    time_left_.change_rays(1, 1, seconds());
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
         goes_on = refine(caller);
     }
-    if (seconds() >= time_limit() - judge_seconds_) {
-        judge(caller.stopped);  // rays that came after the last round's judgement count too
+    if (seconds() >= time_limit() - judge_seconds_ || is_left_) {
+        judge(caller.stopped, true);  // rays that came after the last round's judgement count too
     }
     fill_unrendered();
     pass_image_.finish(picture_->settings.threads);
@@ -80,6 +89,8 @@ void ProgressiveRenderer::add_bounces(bool has_bounced, const Watch& caller) {
     const double until = start + kShareOfBounces * (time_limit() - start);
     const auto seconds_left = [&] { return until - seconds(); };
     refinement_.begin_again();
+    time_left_.change_rays(kBounceTimes, refinement_.has_preview() ? kLaterShare : 1, start);
+    time_left_.begin_records(start);
     for (int step = kWidestRecordStep; step >= kLeastRecordStep && seconds_left() > 0 && !is_left_; step /= 2) {
         const RenderReport report = placement.add_grid(step, caller.stopped, seconds_left);
         {
@@ -87,7 +98,7 @@ void ProgressiveRenderer::add_bounces(bool has_bounced, const Watch& caller) {
             told_ += report;
         }
         follow_records();
-        bounce_seconds_ = seconds() - start;
+        time_left_.end_grid(step, seconds());
         if (report.records > 0 && watch_->on_update && refinement_.has_preview() && step >= kLeastShownStep) {
             is_complete_ = false;  // pixels with bounces are not shown among others without
             run_job(job_of(Grid{step, 0}), std::numeric_limits<double>::infinity(), caller.stopped);
@@ -97,7 +108,8 @@ void ProgressiveRenderer::add_bounces(bool has_bounced, const Watch& caller) {
     record_error_ = placement.error();
     refinement_.limit_paths();
     follow_records();
-    bounce_seconds_ = seconds() - start;
+    time_left_.end_records();
+    time_left_.set_rays_left(kUsualRays * refinement_.rays_left());
 }
 
 void ProgressiveRenderer::follow_records() {
@@ -158,6 +170,7 @@ int ProgressiveRenderer::widest_step() const {
 bool ProgressiveRenderer::first_pass(const Watch& caller, double latest) {
     const int last = refinement_.first_step();
     const double begin = seconds();
+    const double done = time_left_.rays_done();
     double until = std::numeric_limits<double>::infinity();  // the first grid is always made
     bool goes_on = true;
     for (Grid grid = {widest_step(), 0}; goes_on && grid.step >= last; grid = {grid.step / 2, grid.step}) {
@@ -168,24 +181,31 @@ bool ProgressiveRenderer::first_pass(const Watch& caller, double latest) {
             show_grid(grid.step, caller);
         }
     }
-    seconds_per_first_ray_ = (seconds() - begin) / std::max(rays_done_.load(), 1.0);
+    seconds_per_first_ray_ = (seconds() - begin) / std::max(time_left_.rays_done() - done, 1.0);
     passes_ = 1;
     return goes_on && !is_left_;
 }
 
-std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped) {
+std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped, bool is_last) {
     const double begin = seconds();
     auto groups = refinement_.next_round(image_, picture_->settings.threads, stopped);
     judge_seconds_ = seconds() - begin;
-    rays_left_ = refinement_.rays_left();
+    double unknown = 0;  // number of pixels
+    for (const RefinementGroup& group : groups) {
+        unknown += group.from < 0 ? static_cast<double>(group.pixels.size()) : 0.0;
+    }
+    const bool is_known = unknown <= kUnknownShare * picture_->width * picture_->height;
+    time_left_.set_rays_left((is_known ? 1 : kUsualRays) * refinement_.rays_left());
     const std::lock_guard lock(telling_);
-    told_.noise = std::hypot(refinement_.noise(), record_error_);
+    if (is_known || is_last) {
+        told_.noise = std::hypot(refinement_.noise(), record_error_);
+    }
     told_.passes = passes_;  // a pass is told of with its noise
     return groups;
 }
 
 bool ProgressiveRenderer::refine(const Watch& caller) {
-    const auto groups = most_urgent(judge(caller.stopped));
+    const auto groups = most_urgent(judge(caller.stopped, false));
     show_now(caller);
     if (is_left_ || groups.empty()) {
         return false;
@@ -224,19 +244,20 @@ ProgressiveRenderer::Job ProgressiveRenderer::job_of(const RefinementGroup& grou
 }
 
 bool ProgressiveRenderer::run_job(const Job& job, double until, const Stopped& stopped) {
-    const double left = std::max(rays_left_ - job.rays, 0.0);
-    rays_left_ = left + job.rays;
+    const double left = std::max(time_left_.rays_left() - job.rays, 0.0);
+    time_left_.set_rays_left(left + job.rays);
+    time_left_.begin_job(seconds());
     const double rays_of_task = job.rays / static_cast<double>(std::max<std::size_t>(job.tasks, 1));
     std::atomic<std::size_t> next = 0;  // tasks begin in their order, whatever the scheduler prefers
     parallel_for(job.tasks, picture_->settings.threads, [&](std::size_t) {
         end_if(stopped);
         if (!is_left_ && seconds() <= until) {
             job.task(next++);
-            rays_done_ += rays_of_task;
-            rays_left_ -= rays_of_task;
+            time_left_.add_rays(rays_of_task);
         }
     });
-    rays_left_ = left;
+    time_left_.end_job(seconds());
+    time_left_.set_rays_left(left);
     return next == job.tasks;
 }
 
@@ -253,11 +274,9 @@ void ProgressiveRenderer::fill_unrendered() {
     }
 }
 
-/// All that is known of rays to come is how long those before them took.
 double ProgressiveRenderer::seconds_left() const {
-    const double tracing = seconds() - bounce_seconds_;
-    const double left = rays_done_ > 0 ? tracing * std::max(rays_left_ / rays_done_, 0.0) : 0.0;
-    return std::clamp(time_limit() - seconds(), 0.0, left);
+    const double now = seconds();
+    return std::clamp(time_limit() - now, 0.0, time_left_.at(now));
 }
 
 void ProgressiveRenderer::show_now(const Watch& caller) {

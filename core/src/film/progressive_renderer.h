@@ -19,6 +19,7 @@
 #include "film/pixel_batch.h"
 #include "film/pixel_order.h"
 #include "film/refinement.h"
+#include "film/time_left.h"
 #include "shlight/parallel.h"
 #include "shlight/render.h"
 #include "surfaces/stored_light.h"
@@ -67,8 +68,9 @@ class ProgressiveRenderer {
     void follow_records();
     /// Interpolates between the pixels of a grid, and has the caller show the picture.
     void show_grid(int step, const Watch& caller);
-    /// Finds the pixels that need more rays, and the picture's noise.
-    std::vector<RefinementGroup> judge(const Stopped& stopped);
+    /// Finds the pixels that need more rays, and the picture's noise, if that is known by now. is_last: no rays come
+    /// after it.
+    std::vector<RefinementGroup> judge(const Stopped& stopped, bool is_last);
     /// Refines some pixels; false: there is nothing left to do, or no time.
     bool refine(const Watch& caller);
     Job job_of(const Grid& grid);
@@ -84,7 +86,6 @@ class ProgressiveRenderer {
     void fill_unrendered();
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     double time_limit() const;
-
     double seconds_left() const;
 
     const Picture* picture_;
@@ -97,19 +98,18 @@ class ProgressiveRenderer {
     double judge_seconds_ = 0;  // of the last round
     int grid_step_ = 1;         // of the finest grid whose pixels all have rays
     Refinement refinement_;
+    TimeLeft time_left_;
     StoredLight* stored_;
     std::vector<float> before_;  // the image without the records, whose detail wide grids of pixels with them keep
     tbb::enumerable_thread_specific<PixelBatch> batches_;
-    std::atomic<bool> bounces_ = false;       // whether light does, by now
-    std::atomic<double> bounce_seconds_ = 0;  // that making records took
-    int passes_ = 0;                          // that are whole
-    double record_error_ = 0;                 // by records, as RenderReport::noise
+    std::atomic<bool> bounces_ = false;  // whether light does, by now
+    int passes_ = 0;                     // that are whole
+    double record_error_ = 0;            // by records, as RenderReport::noise
 
     std::shared_mutex merging_;   // shared by those that write pixels
     mutable std::mutex telling_;  // guards told_
     RenderReport told_;
-    std::atomic<double> rays_done_ = 0, rays_left_ = 0;  // camera rays, as far as they are known
-    std::atomic<bool> is_complete_ = false;              // whether there is a picture to show
+    std::atomic<bool> is_complete_ = false;  // whether there is a picture to show
     std::atomic<bool> wants_show_ = false;
     std::atomic<bool> is_left_ = false;  // by on_update
 
