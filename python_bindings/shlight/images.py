@@ -30,6 +30,8 @@ __all__ = [
     "write_png",
 ]
 
+_ROWS = 256  # that are read at once to see whether a file is whole
+_PNG_END = b"IEND\xaeB`\x82"  # which readers do not ask for
 _TEXTURE_NUMBERS = ("uint8", "uint16", "half", "float")
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
 # Passes of `shlight.render` whose channels are not RGBA: what Blender's files call them, and their channels.
@@ -375,9 +377,40 @@ def _write(
 def write_pixels(path: Path, spec: Any, pixels: npt.NDArray[Any], file_format: str, place: Path) -> None:
     """Writes a file of an oiio.ImageSpec at `place`. OSError, which names `path`, where it cannot be written."""
     target = opened_output(path, spec, file_format, place)
-    done = target.write_image(pixels)
+    close_output(path, target, place, done=target.write_image(pixels))
+
+
+def close_output(path: Path, target: Any, place: Path, *, done: bool = True) -> None:
+    """Ends a file of `opened_output`. OSError, which names `path`, where it is not whole or what came before failed.
+
+    It is read again: on a full disk OpenImageIO may lose the last bytes of a file and not say so.
+    """
+    import OpenImageIO as oiio
+
     if not (target.close() and done):
         raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")
+    source = oiio.ImageInput.open(_as_it_is(place))
+    oiio.geterror()
+    is_cut = source is None or (source.format_name() == "png" and not place.read_bytes().endswith(_PNG_END))
+    if is_cut or not is_readable(source):
+        raise OSError(f"{path}: the end of the file could not be written; the disk may be full")
+
+
+def is_readable(source: Any) -> bool:
+    """Whether all rows of an oiio.ImageInput can be read; closes it."""
+    spec = source.spec()
+    try:
+        return all(_rows(source, spec, top) is not None for top in range(0, spec.height, _ROWS))
+    finally:
+        source.geterror()
+        source.close()
+
+
+def _rows(source: Any, spec: Any, top: int) -> npt.NDArray[Any] | None:
+    end = min(top + _ROWS, spec.height)
+    if spec.tile_width:
+        return source.read_tiles(0, spec.width, top, end, 0, 1, 0, spec.nchannels, "float")
+    return source.read_scanlines(top, end, 0, 0, spec.nchannels, "float")
 
 
 def opened_output(path: Path, spec: Any, file_format: str, place: Path) -> Any:

@@ -18,6 +18,7 @@
 #include "arguments.h"
 #include "base/unit_direction.h"
 #include "bindings.h"
+#include "gil.h"
 #include "shlight/bsdf.h"
 #include "shlight/lobe_table.h"
 #include "shlight/plain_fit.h"
@@ -251,7 +252,7 @@ Bsdf constant_ggx(const py::object& roughness, const py::object& f0, const py::o
     const auto width = static_cast<float>(real_from("roughness", roughness));
     const Rgb head_on = color_from("f0", f0);
     const double index = ior_from(ior);
-    const py::gil_scoped_release release;
+    const GilReleased release;
     return Bsdf::ggx(width, head_on, index);
 }
 

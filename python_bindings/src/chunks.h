@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "gil.h"
 #include "shlight/parallel.h"
 #include "shlight/types.h"
 
@@ -85,6 +86,7 @@ class FirstWrongRow {
 
 /// Throws what a signal's handler raises, such as KeyboardInterrupt.
 inline void check_signals() {
+    throw_at_end();
     const pybind11::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) {
         throw pybind11::error_already_set();
@@ -122,7 +124,7 @@ class SignalWatch {
 /// the first row that work throws std::invalid_argument for. size: of chunks; 0: chunk_of(total).
 template <class Work>
 void in_chunks(std::size_t total, int threads, const Work& work, std::size_t size = 0) {
-    const pybind11::gil_scoped_release release;
+    const GilReleased release;
     size = size > 0 ? size : chunk_of(total);
     FirstWrongRow wrong;
     SignalWatch signals;

@@ -14,6 +14,7 @@
 #include <glm/matrix.hpp>
 
 #include "arguments.h"
+#include "gil.h"
 #include "shader_bindings.h"
 #include "shlight/emission_profile.h"
 #include "shlight/render_passes.h"
@@ -420,7 +421,7 @@ Environment environment_from(const char* name, const py::handle& value, const gl
     const auto pixels = vectors(name, array);
     LatLong picture = {
         {pixels.begin(), pixels.end()}, static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), to_world};
-    const py::gil_scoped_release release;
+    const GilReleased release;
     return Environment(std::move(picture));
 }
 

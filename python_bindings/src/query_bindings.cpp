@@ -13,6 +13,7 @@
 
 #include "arguments.h"
 #include "chunks.h"
+#include "gil.h"
 #include "render_calls.h"
 #include "scene_bindings.h"
 #include "shlight/scene_queries.h"
@@ -224,7 +225,7 @@ py::object intersect_scene(SceneObject& self, const py::object& origins, const p
 /// now and then where the thread that called is asked.
 template <class Query>
 void run_query(const Progress& report, const Query& query) {
-    const py::gil_scoped_release release;
+    const GilReleased release;
     SignalWatch watch;
     query(Progress([&](double share) { return !watch.is_due() || report(share); }));
     if (!report(1)) {

@@ -19,6 +19,7 @@
 
 #include "arguments.h"
 #include "bindings.h"
+#include "gil.h"
 #include "pass_arrays.h"
 #include "render_calls.h"
 #include "whole_objects.h"
@@ -198,6 +199,7 @@ PictureUpdate update_from(const py::object& callback, int width, int height, flo
         return {};
     }
     return [=, &callback](std::span<const float> image, const RenderReport& report) {
+        throw_at_end();
         const py::gil_scoped_acquire acquire;
         py::array_t<float> copy({height, width, 4}, image.data());
         expose(copy, 0, 3, exposure);
@@ -251,7 +253,7 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
     const RenderWatch watch = {report_progress, update_from(on_update, columns, rows, light_factor, build_seconds)};
     RenderReport report;
     {
-        const py::gil_scoped_release release;
+        const GilReleased release;
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
                         {values.mutable_data(), static_cast<std::size_t>(values.size())}, kept);
     }

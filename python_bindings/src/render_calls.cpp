@@ -11,6 +11,7 @@
 
 #include "arguments.h"
 #include "chunks.h"
+#include "gil.h"
 
 namespace shlight::python {
 
@@ -36,6 +37,7 @@ void check_callable(const char* name, const py::object& callback) {
 Progress progress_from(const py::object& callback) {
     check_callable("progress", callback);
     return [&callback](double share) {
+        throw_at_end();
         const py::gil_scoped_acquire acquire;
         check_signals();
         return callback.is_none() || !is_false(callback(share));
@@ -89,7 +91,7 @@ std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& ob
     const auto start = std::chrono::steady_clock::now();
     std::shared_ptr<const CompiledScene> result;
     {
-        const py::gil_scoped_release release;
+        const GilReleased release;
         result = scene.compile(threads, progress, before.get());
     }
     if (object.revision == revision) {

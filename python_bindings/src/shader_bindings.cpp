@@ -14,6 +14,7 @@
 #include "arguments.h"
 #include "bindings.h"
 #include "chunks.h"
+#include "gil.h"
 #include "shaders/image_texture.h"
 #include "shaders/operations.h"
 #include "shaders/script_kernel.h"
@@ -118,7 +119,7 @@ Array<float> evaluate(const ShaderProgram& program,
     }
     Array<float> out({static_cast<py::ssize_t>(program.result_count()), static_cast<py::ssize_t>(count)});
     const std::span<float> results(out.mutable_data(), static_cast<std::size_t>(out.size()));
-    const py::gil_scoped_release release;
+    const GilReleased release;
     const std::size_t chunk = chunk_of(count);
     parallel_for((count + chunk - 1) / chunk, 0, [&](std::size_t number) {
         const std::size_t begin = number * chunk, lanes = std::min(chunk, count - begin);
@@ -254,7 +255,7 @@ std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding
         const AnyArray<float> floats = array_from<float>("pixels", pixels);
         values = std::vector<float>(floats.data(), floats.data() + floats.size());
     }
-    const py::gil_scoped_release release;
+    const GilReleased release;
     return std::make_shared<TexturePixels>(
         std::move(values), width, height, channels, static_cast<TexelEncoding>(encoding),
         static_cast<TextureInterpolation>(interpolation), static_cast<TextureExtension>(extension));

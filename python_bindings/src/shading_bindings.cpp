@@ -6,6 +6,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "chunks.h"
+#include "gil.h"
 #include "shaded.h"
 #include "shlight/light_shading.h"
 
@@ -17,7 +18,7 @@ template <class Work>
 void shade_parts(std::size_t total, const Bsdf& bsdf, const ShadeSettings& settings, int threads, const Work& work) {
     tbb::enumerable_thread_specific<LightShader> shaders([&] { return LightShader(bsdf, settings); });
     {
-        const py::gil_scoped_release release;
+        const GilReleased release;
         shaders.local();  // checks the settings even if there are no lights
     }
     in_chunks(total, threads, [&](std::size_t first, std::size_t count) { work(shaders.local(), first, count); });

@@ -12,6 +12,7 @@
 
 #include "arguments.h"
 #include "bindings.h"
+#include "gil.h"
 #include "shlight/bsdf.h"
 #include "shlight/lobe_table.h"
 #include "whole_objects.h"
@@ -28,7 +29,7 @@ std::shared_ptr<LobeTable> table_from(bool half_vector, const TableAxes& axes, i
     const std::array<TableAxis, 4> own = {axis(0), axis(1), axis(2), axis(3)};
     const auto all = values(entries);
     std::vector<float> copy(all.begin(), all.end());
-    const py::gil_scoped_release release;
+    const GilReleased release;
     return std::make_shared<LobeTable>(half_vector ? TableAngles::half_vector : TableAngles::directions, own, channels,
                                        std::move(copy), std::move(sampling_errors));
 }
@@ -73,7 +74,7 @@ void bind_tables(py::module_& m) {
         .def(
             "bsdf",
             [](const std::shared_ptr<LobeTable>& table, int order) {
-                const py::gil_scoped_release release;
+                const GilReleased release;
                 return Bsdf::table(table, order);
             },
             py::arg("order"));

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "arguments.h"
+#include "gil.h"
 #include "render_calls.h"
 #include "scene_bindings.h"
 #include "shlight/fixed_view.h"
@@ -115,7 +116,7 @@ py::object relight(ViewHandle& self, const py::object& noise_threshold, const py
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
     RenderReport report;
     {
-        const py::gil_scoped_release release;
+        const GilReleased release;
         const std::unique_lock lock(*self.relighting, std::try_to_lock);
         if (!lock.owns_lock()) {
             throw std::runtime_error("the view is being lit by another call");

@@ -36,8 +36,11 @@ Device shared_device() {
     if (!device) {
         RTCDevice made = rtcNewDevice(nullptr);
         if (made == nullptr) {
-            throw std::runtime_error("Embree cannot be started: error " +
-                                     std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))));
+            const RTCError error = rtcGetDeviceError(nullptr);
+            if (error == RTC_ERROR_OUT_OF_MEMORY) {
+                throw std::bad_alloc();
+            }
+            throw std::runtime_error("Embree cannot be started: error " + std::to_string(static_cast<int>(error)));
         }
         device = Device(made, rtcReleaseDevice);
         recent = device;

@@ -9,15 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shlight.farm.frames import PNG
 from shlight.farm.pictures import Box, Picture, Rendered
-from shlight.images import complete_or_absent, opened_output, write_pixels
+from shlight.images import close_output, complete_or_absent, is_readable, opened_output, write_pixels
 
 KEY = "shlight:key"
 TILE = 64  # side of the file's tiles
-ROWS = 256  # that are read at once
 
 
 def encode(picture: Picture, rendered: Rendered) -> bytes:
@@ -43,6 +41,7 @@ class TiledFile:
         self._missing = set(picture.boxes)
         self._stack = ExitStack()
         self._target: Any = None
+        self._place = Path()
 
     def add(self, box: Box, tile: Rendered) -> bool:
         """Writes one; whether the file is complete with it. OSError leaves no file."""
@@ -51,8 +50,8 @@ class TiledFile:
             spec.tile_width = spec.tile_height = TILE
             spec.attribute("openexr:lineOrder", "randomY")  # else what comes early would be kept in memory
             path = self._picture.path
-            temporary = self._stack.enter_context(complete_or_absent(path))
-            self._target = opened_output(path, spec, _format(self._picture), temporary)
+            self._place = self._stack.enter_context(complete_or_absent(path))
+            self._target = opened_output(path, spec, _format(self._picture), self._place)
         left, top, right, bottom = box
         pixels = np.ascontiguousarray(tile.pixels, dtype=np.float32)
         if not self._target.write_tiles(left, right, top, bottom, 0, 1, pixels):
@@ -60,14 +59,14 @@ class TiledFile:
         self._missing.discard(box)
         if self._missing:
             return False
-        if not self._target.close():
-            raise OSError(f"{self._picture.path}: {self._target.geterror().strip()}")
+        close_output(self._picture.path, self._target, self._place)
         self._stack.close()
+        self._target = None
         return True
 
     def drop(self) -> None:
         """Leaves no file of one that is not complete."""
-        if self._target is not None and self._missing:
+        if self._target is not None:
             self._target.close()
             self._stack.__exit__(OSError, OSError(), None)
 
@@ -82,21 +81,11 @@ def is_whole(picture: Picture) -> bool:
     if source is None:
         oiio.geterror()
         return False
-    try:
-        spec = source.spec()
-        if spec.getattribute(KEY) != picture.key or (spec.width, spec.height) != picture.size:
-            return False
-        return all(_rows(source, spec, top) is not None for top in range(0, spec.height, ROWS))
-    finally:
-        source.geterror()
+    spec = source.spec()
+    if spec.getattribute(KEY) != picture.key or (spec.width, spec.height) != picture.size:
         source.close()
-
-
-def _rows(source: Any, spec: Any, top: int) -> NDArray[Any] | None:
-    end = min(top + ROWS, spec.height)
-    if spec.tile_width:
-        return source.read_tiles(0, spec.width, top, end, 0, 1, 0, spec.nchannels, "float")
-    return source.read_scanlines(top, end, 0, 0, spec.nchannels, "float")
+        return False
+    return is_readable(source)
 
 
 def _spec(picture: Picture, rendered: Rendered) -> Any:
