@@ -26,7 +26,7 @@ class GilReleased {
 /// Throws RenderCancelled in a daemon thread once Python ends. What works without the GIL asks before it takes it.
 void throw_at_end();
 
-/// From now on Python's end cancels the calls of daemon threads, and waits for them before what they use is destroyed.
+/// Lets Python's end cancel the calls of daemon threads from now on, and wait for them before what they use is gone.
 void wait_at_end();
 
 }  // namespace shlight::python

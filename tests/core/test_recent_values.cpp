@@ -70,9 +70,15 @@ TEST(RecentValues, KeepTheLastOnesAskedFor) {
     EXPECT_EQ(made, 3);
     ask(2);
     EXPECT_EQ(made, 4);
+    ask(3);
+    ask(2);
+    EXPECT_EQ(made, 5);
 }
 
 TEST(RecentValues, AreMadeAgainAfterAnException) {
+#ifdef __SANITIZE_THREAD__
+    GTEST_SKIP() << "the sanitizer's pthread_once waits for ever after an exception";
+#endif
     RecentValues<int, int> recent(2);
     EXPECT_THROW(recent.get(1, []() -> std::shared_ptr<const int> { throw std::runtime_error("none"); }),
                  std::runtime_error);

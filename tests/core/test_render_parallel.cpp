@@ -96,7 +96,7 @@ TEST(RenderParallel, CallersAtOnceAndCallsInCalls) {
 
 TEST(RenderParallel, TheCallerLooksWhileWorkGoesOn) {
     const auto caller = std::this_thread::get_id();
-    int looks = 0;
+    std::atomic<int> looks = 0;
     const auto look = [&] {
         EXPECT_EQ(std::this_thread::get_id(), caller);
         ++looks;
@@ -108,7 +108,7 @@ TEST(RenderParallel, TheCallerLooksWhileWorkGoesOn) {
         const int before = looks;
         EXPECT_GE(before, 3);
         watch.look();
-        EXPECT_EQ(looks, before + 1);  // at once, and the work has waited for it
+        EXPECT_EQ(looks.load(), before + 1);  // at once, and the work has waited for it
     };
     run_watched(0, work, look);
     run_watched(0, [&](const Watch& watch) { EXPECT_TRUE(!watch.stopped && !watch.look); }, {});
