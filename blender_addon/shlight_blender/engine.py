@@ -74,6 +74,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             if running.renders.stopped:
                 text = f"the render was stopped because {running.renders.stopped} was disabled"
                 self._say_error(text)  # after an error Blender begins no other frame
+            if self.test_break():
+                running.renders.broken_at = time.monotonic()
             self._deliver(depsgraph, frame, views)
         except ExportError as error:
             record.last.scene_error = str(error)

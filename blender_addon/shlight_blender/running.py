@@ -7,15 +7,19 @@ after the last call of `RenderEngine.render`.
 
 from __future__ import annotations
 
+import math
 import threading
+import time
 from typing import Any
 
 import bpy
 from bpy.app.handlers import persistent
 
 from . import record
+from .report import Effect
 
 ENGINE = "SHLIGHT"
+LATEST_UNDO = 0.5  # seconds after the end of the render that it stops
 LONGEST_WAIT = 30.0  # seconds; the longest part of an export that does not ask whether it is to end takes a few
 
 
@@ -25,6 +29,7 @@ class Renders:
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._thread: int | None = None
+        self.broken_at = -math.inf  # when the last picture ended that Blender wanted no more of, by time.monotonic()
         self.stopped = ""  # the engine that is removed, for which renders end; empty: they run
 
     def begin(self) -> None:
@@ -69,6 +74,13 @@ def _note_end(*_: Any) -> None:
 
 
 @persistent
+def _note_undo(*_: Any) -> None:
+    """Blender has stopped the render before, as if Esc had been pressed, and says nothing of it."""
+    if time.monotonic() - renders.broken_at < LATEST_UNDO:
+        record.last.report.add("Render", "an undo or redo has stopped it; its picture is unfinished", Effect.LIGHT)
+
+
+@persistent
 def _note_file(*_: Any) -> None:
     record.forget()
 
@@ -84,6 +96,8 @@ HANDLERS = {
     "render_init": _note_begin,
     "render_complete": _note_end,
     "render_cancel": _note_end,
+    "undo_pre": _note_undo,
+    "redo_pre": _note_undo,
     "load_post": _note_file,
 }
 

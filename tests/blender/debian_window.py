@@ -67,6 +67,7 @@ def steps():
     set_sky(scene)
     for number in range(2):
         yield from final_render(scene, FOLDER / f"final_{number}.exr")
+    yield from undo_during_a_render(scene)
 
 
 def note_previews():
@@ -119,6 +120,20 @@ def final_render(scene, path):
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+
+
+def undo_during_a_render(scene):
+    """Notes what the report says of a render that an undo ends."""
+    bpy.ops.ed.undo_push(message="one step")
+    bpy.ops.ed.undo_push(message="another")
+    scene.shlight.noise_threshold = 0.0
+    scene.render.resolution_x = 1920
+    before = record.last
+    bpy.ops.render.render("INVOKE_DEFAULT")
+    while record.last is before or not record.last.settings:
+        yield
+    bpy.ops.ed.undo()
+    drawn["undone"] = record.last.report.lines()
 
 
 watch()

@@ -218,7 +218,7 @@ TEST(MapLookup, IsThePicturesRadianceAndItsSamplersDensity) {
     }
 }
 
-TEST(MapLookup, RemainderIsThePictureLessItsExpansionWhereItIsNotBlurred) {
+TEST(MapLookup, BlurredOverNothingItIsThePicture) {
     LatLong source = random_picture(48, 24, 5);
     source.pixels[300] = Rgb(2000, 900, 400);
     const EnvironmentMap map(std::make_shared<const LatLong>(source));
@@ -243,52 +243,15 @@ TEST(MapLookup, RemainderIsThePictureLessItsExpansionWhereItIsNotBlurred) {
         for (const bool with_spots : {true, false}) {
             // A place in float errs by some roundings of the width, times the largest step between two texels.
             const double tolerance = 48 * 0x1p-22 * (with_spots ? 2000.0 : map.bright.limit);
-            look_up_remainder(map, with_spots, false, {v[0].data(), v[1].data(), v[2].data()}, none.data(),
-                              kLookupLanes, {v[3].data(), v[4].data(), v[5].data()});
+            look_up_blurred(map, with_spots, {v[0].data(), v[1].data(), v[2].data()}, none.data(), kLookupLanes,
+                            {v[3].data(), v[4].data(), v[5].data()});
             for (std::size_t i = 0; i < kLookupLanes; ++i) {
-                const Rgb whole = radiance_from(with_spots ? source : below, directions[i]);
-                const Rgb expected = whole - radiance_from(map.expansion, directions[i]);
+                const Rgb expected = radiance_from(with_spots ? source : below, directions[i]);
                 for (std::size_t c = 0; c < 3; ++c) {
                     EXPECT_NEAR(v[3 + c][i], expected[static_cast<int>(c)], tolerance) << with_spots;
                 }
             }
         }
-    }
-}
-
-TEST(MapLookup, ExpansionIsLinearBetweenItsTexels) {
-    // Linear interpolation over steps h errs by h²/8 of the second derivative along each axis, and a function of band l
-    // has at most l (l + 1) times its largest value, which its coefficients bound.
-    constexpr int kWidth = 512;
-    const double step = 2 * kPi / kWidth;
-    std::mt19937 random(14);
-    std::normal_distribution<float> normal;
-    RadianceCoefficients coefficients{};
-    double bound = 1e-4;
-    for (auto& channel : coefficients.channels) {
-        channel.assign(std::size_t{kMaxOrder} * kMaxOrder, 0.0F);
-    }
-    for (int l = 0; l < kMaxOrder; ++l) {
-        double power = 0;
-        for (int m = -l; m <= l; ++m) {
-            const float value = normal(random) / static_cast<float>((l + 1) * (l + 1));
-            coefficients.channels[1][static_cast<std::size_t>(coefficient_index(l, m))] = value;
-            power += double{value} * value;
-        }
-        bound += 2 * step * step / 8 * l * (l + 1) * std::sqrt((2 * l + 1) / (4 * kPi) * power);
-    }
-    const LatLong expansion = expanded(coefficients, kWidth, kWidth / 2, {});
-    for (int i = 0; i < 100; ++i) {
-        const Vec3d direction = glm::normalize(Vec3d(normal(random), normal(random), normal(random)));
-        if (std::abs(direction.z) > std::cos(step / 2)) {
-            continue;
-        }
-        const auto basis = basis_at(direction, kMaxOrder);
-        double expected = 0;
-        for (std::size_t k = 0; k < basis.size(); ++k) {
-            expected += coefficients.channels[1][k] * basis[k];
-        }
-        EXPECT_NEAR(radiance_from(expansion, direction).y, expected, bound);
     }
 }
 
@@ -358,6 +321,16 @@ TEST(EnvironmentMap, SurfacesReflectTheirIntegral) {
             const double ratio = floor.rendered(picture, bsdf).x / expected;
             EXPECT_NEAR(ratio, 1, tolerance) << cosine << " " << roughness;
         }
+    }
+}
+
+/// The picture changes by half its mean from texel to texel, and hardly within the lobe.
+TEST(EnvironmentMap, ANarrowLobeShowsThePicture) {
+    const LatLong picture = random_picture(128, 64, 4);
+    for (const double cosine : {0.95, 0.7, 0.5, 0.2}) {
+        const Floor floor(cosine);
+        const double seen = radiance_from(picture, floor.mirrored()).x;
+        EXPECT_NEAR(floor.rendered(picture, Bsdf::ggx(0.002F, Rgb(1))).x / seen, 1, 1e-3) << cosine;
     }
 }
 

@@ -22,9 +22,6 @@ using std::numbers::pi;
 constexpr double kSpotLimit = 30;
 /// This many spots take no more time than the harmonics do.
 constexpr std::size_t kMostSpots = 512;
-/// Texels in a row of the expansion. Between their centres, 0.003 apart, linear interpolation loses 0.3 % of band 63 on
-/// average and less of the others.
-constexpr int kExpansionWidth = 2048;
 
 std::size_t texel_index(int column, int row, int width) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
@@ -222,16 +219,11 @@ Rgb BrightTexels::below(const Rgb& texel) const {
 
 namespace {
 
-/// The picture less the expansion.
-RadiancePyramid remainder_of(const LatLong& picture, const LatLong& expansion, const BrightTexels* without,
-                             const Stopped& stopped) {
-    const glm::dvec2 scale(double(expansion.width) / picture.width, double(expansion.height) / picture.height);
+RadiancePyramid pyramid_of(const LatLong& picture, const BrightTexels* without, const Stopped& stopped) {
     const auto row_of = [&](int row, std::span<Rgb> texels) {
-        for (std::size_t column = 0; column < texels.size(); ++column) {
-            const Rgb& texel = picture.pixels[static_cast<std::size_t>(row) * texels.size() + column];
-            texels[column] = (without != nullptr ? without->below(texel) : texel) -
-                             bilinear(expansion, scale * (glm::dvec2(column, row) + 0.5));
-        }
+        const auto* own = &picture.pixels[static_cast<std::size_t>(row) * texels.size()];
+        std::transform(own, own + texels.size(), texels.begin(),
+                       [&](const Rgb& texel) { return without != nullptr ? without->below(texel) : texel; });
     };
     return {picture.width, picture.height, row_of, stopped};
 }
@@ -243,9 +235,7 @@ EnvironmentMap::EnvironmentMap(std::shared_ptr<const LatLong> source, const Stop
       bright(*picture),
       sampler(*picture, stopped),
       coefficients(radiance_coefficients(*picture, bright, stopped)),
-      expansion(expanded(coefficients, std::min(picture->width, kExpansionWidth),
-                         std::min(picture->height, kExpansionWidth / 2), stopped)),
-      remainder(remainder_of(*picture, expansion, &bright, stopped)),
-      whole_remainder(remainder_of(*picture, expansion, nullptr, stopped)) {}
+      smooth(pyramid_of(*picture, &bright, stopped)),
+      whole(pyramid_of(*picture, nullptr, stopped)) {}
 
 }  // namespace shlight

@@ -5,8 +5,8 @@
 // A sun would need thousands of bands. The light of the picture's brightest texels beyond a limit, their spots, is
 // taken out of what is expanded and blurred, and kept as a list of directions of no extent.
 //
-// An 8k picture has 34 million texels of 12 bytes. Beside it this keeps 13 bytes a texel: the sampler's 4, two pyramids
-// without their finest level at 4 each, and an expansion that is never finer than 2048 × 1024.
+// An 8k picture has 34 million texels of 12 bytes. Beside it this keeps 12 bytes a texel: the sampler's 4, and two
+// pyramids without their finest level at 4 each.
 //
 // Between the centres of texels radiance is bilinear in longitude and latitude; beyond the outermost rows' centres, at
 // the poles, it is constant along a meridian. Everything here is of that function. Directions are unit vectors of the
@@ -123,9 +123,6 @@ struct RadianceCoefficients {
 RadianceCoefficients radiance_coefficients(const LatLong& picture, const BrightTexels& bright,
                                            const Stopped& stopped = {});
 
-/// The sum of the harmonics at the centres of the texels of a picture of this size.
-LatLong expanded(const RadianceCoefficients& coefficients, int width, int height, const Stopped& stopped);
-
 /// The data for lighting by a picture.
 struct EnvironmentMap {
     /// Throws RenderCancelled once it is to end.
@@ -139,9 +136,8 @@ struct EnvironmentMap {
     BrightTexels bright;
     RadianceSampler sampler;
     RadianceCoefficients coefficients;  ///< without the spots
-    LatLong expansion;                  ///< of the coefficients
-    RadiancePyramid remainder;          ///< the picture without the spots, less the expansion
-    RadiancePyramid whole_remainder;    ///< the picture with them, less the expansion
+    RadiancePyramid smooth;             ///< of the picture without the spots
+    RadiancePyramid whole;              ///< of the picture with them
 };
 
 }  // namespace shlight

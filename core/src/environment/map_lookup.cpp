@@ -176,19 +176,10 @@ HWY_INLINE Neighbourhood on_level(const RadiancePyramid& pyramid, V<Floats> leve
             hn::GatherIndex(di, first + 2, at)};
 }
 
-/// The remainder without blur.
-HWY_INLINE Color remainder_at(const EnvironmentMap& map, bool with_spots, const Place& place) {
-    const Neighbourhood about = on_picture(*map.picture, place);
-    const Rgb* pixels = map.picture->pixels.data();
-    const Color whole = with_spots ? about.mean(pixels) : about.mean_below(pixels, map.bright.limit);
-    const Color expansion = on_picture(map.expansion, place).mean(map.expansion.pixels.data());
-    return {hn::Sub(whole[0], expansion[0]), hn::Sub(whole[1], expansion[1]), hn::Sub(whole[2], expansion[2])};
-}
-
-void look_up_remainder(const EnvironmentMap& map, bool with_spots, bool with_expansion, const MapDirections& directions,
-                       const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
+void look_up_blurred(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+                     const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
     const Floats d;
-    const RadiancePyramid& pyramid = with_spots ? map.whole_remainder : map.remainder;
+    const RadiancePyramid& pyramid = with_spots ? map.whole : map.smooth;
     const auto zero = hn::Zero(d);
     const auto last = all(d, static_cast<double>(pyramid.levels().size() - 1));
     // At the equator of the pyramid's finest level, where texels are twice as wide as the picture's.
@@ -204,18 +195,14 @@ void look_up_remainder(const EnvironmentMap& map, bool with_spots, bool with_exp
         const Color coarse = on_level(pyramid, coarser, place).mean(pyramid.pixels());
         const auto is_finest = hn::Lt(finer, zero);
         if (!hn::AllFalse(d, is_finest)) {
-            const Color finest = remainder_at(map, with_spots, place);
+            const Neighbourhood about = on_picture(*map.picture, place);
+            const Rgb* pixels = map.picture->pixels.data();
+            const Color finest = with_spots ? about.mean(pixels) : about.mean_below(pixels, map.bright.limit);
             for (std::size_t channel = 0; channel < 3; ++channel) {
                 fine[channel] = hn::IfThenElse(is_finest, finest[channel], fine[channel]);
             }
         }
-        Color blurred = mixed(fine, coarse, hn::Sub(level, finer));
-        if (with_expansion) {
-            const Color expansion = on_picture(map.expansion, place).mean(map.expansion.pixels.data());
-            for (std::size_t channel = 0; channel < 3; ++channel) {
-                blurred[channel] = hn::Add(blurred[channel], expansion[channel]);
-            }
-        }
+        const Color blurred = mixed(fine, coarse, hn::Sub(level, finer));
         for (std::size_t channel = 0; channel < 3; ++channel) {
             hn::StoreU(blurred[channel], d, radiance[channel] + i);
         }
@@ -230,15 +217,15 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 
 HWY_EXPORT(look_up);
-HWY_EXPORT(look_up_remainder);
+HWY_EXPORT(look_up_blurred);
 
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values) {
     HWY_DYNAMIC_DISPATCH(look_up)(map, directions, count, values);
 }
 
-void look_up_remainder(const EnvironmentMap& map, bool with_spots, bool with_expansion, const MapDirections& directions,
-                       const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
-    HWY_DYNAMIC_DISPATCH(look_up_remainder)(map, with_spots, with_expansion, directions, solid_angles, count, radiance);
+void look_up_blurred(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+                     const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
+    HWY_DYNAMIC_DISPATCH(look_up_blurred)(map, with_spots, directions, solid_angles, count, radiance);
 }
 
 }  // namespace shlight

@@ -26,9 +26,8 @@ struct MapValues {
 
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values);
 
-/// The picture less the expansion in each direction, with or without the spots, blurred over about so large a solid
-/// angle; or with the expansion, which is not blurred.
-void look_up_remainder(const EnvironmentMap& map, bool with_spots, bool with_expansion, const MapDirections& directions,
-                       const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance);
+/// The picture in each direction, with or without the spots, blurred over about so large a solid angle.
+void look_up_blurred(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+                     const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance);
 
 }  // namespace shlight

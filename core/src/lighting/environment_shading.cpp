@@ -18,9 +18,10 @@
 namespace shlight {
 namespace {
 
-/// Directions that a lobe is summed over, along each side of the unit square: a narrow one beside its harmonics, and a
-/// one of two widths without any.
-constexpr std::size_t kDirectionsAcross = 16, kStretchedAcross = 32;
+/// Directions that a lobe is summed over, along each side of the unit square, and the widths up to which few and some
+/// of them do: the narrower a lobe is the less the picture changes over it. One of two widths takes the most.
+constexpr std::size_t kFewAcross = 8, kSomeAcross = 16, kManyAcross = 24, kStretchedAcross = 32;
+constexpr double kFewWidth = 0.02, kSomeWidth = 0.06;
 
 /// Points of the unit square that these are made of.
 template <std::size_t kAcross>
@@ -44,7 +45,7 @@ struct DirectionArrays {
     std::array<std::array<float, kAcross * kAcross>, 8> values;
 };
 
-/// Relative to the lobe's albedo and the picture's mean: harmonics that err by more are not left alone.
+/// Relative to the lobe's albedo and the picture's mean: if harmonics err by more, the lobe is summed over directions.
 constexpr double kDirectionError = 5e-3;
 
 /// A lobe less than this many times as wide as a texel sees spots as areas: its directions miss none that count.
@@ -159,7 +160,7 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const 
         }
         const double error = errors[static_cast<std::size_t>(chosen - 1)];
         const bool narrow = may_be_narrow && error > std::max(kDirectionError, tolerance);
-        plan.choices.push_back({narrow ? kMaxOrder : chosen, narrow, error <= tolerance});
+        plan.choices.push_back({chosen, narrow, error <= tolerance});
     }
     return plan;
 }
@@ -172,7 +173,7 @@ EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, const 
                                                       double azimuth) const {
     const Choice choice =
         either(choose(*mix.plans[0], cos_theta_o, azimuth), choose(*mix.plans[1], cos_theta_o, azimuth));
-    return sees_texels(shape) ? Choice{kMaxOrder, true, choice.met} : choice;
+    return sees_texels(shape) ? Choice{choice.order, true, choice.met} : choice;
 }
 
 EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o, double azimuth) {
@@ -195,10 +196,20 @@ class EnvironmentShading::Point {
     const glm::dmat3& to_map() const { return to_map_; }
     const Vec3d& view() const { return view_; }
 
-    /// The mean of what the directions show of the remainder, or of the whole picture, weighed with f·cos over their
-    /// density.
+    /// The mean of what directions show of the picture, weighed with f·cos over their density.
+    Rgb by_directions(const LobeShape& shape, bool with_spots) const {
+        if (has_two_widths(shape)) {
+            return by_directions<kStretchedAcross>(shape, with_spots);
+        }
+        const double width = lobe_width(shape);
+        return width <= kFewWidth    ? by_directions<kFewAcross>(shape, with_spots)
+               : width <= kSomeWidth ? by_directions<kSomeAcross>(shape, with_spots)
+                                     : by_directions<kManyAcross>(shape, with_spots);
+    }
+
+  private:
     template <std::size_t kAcross>
-    Rgb by_directions(const LobeShape& shape, bool with_spots, bool whole) const {
+    Rgb by_directions(const LobeShape& shape, bool with_spots) const {
         static const DirectionPoints<kAcross> points;
         constexpr std::size_t kDirections = DirectionPoints<kAcross>::kCount;
         DirectionArrays<kAcross> lanes;
@@ -216,8 +227,8 @@ class EnvironmentShading::Point {
             value[i] = above ? value[i] / density[i] : 0.0F;
             density[i] = 1 / ((above ? density[i] : 1.0F) * kDirections);  // the solid angle
         }
-        look_up_remainder(*map_, with_spots, whole, {x.data(), y.data(), z.data()}, density.data(), kDirections,
-                          {red.data(), green.data(), blue.data()});
+        look_up_blurred(*map_, with_spots, {x.data(), y.data(), z.data()}, density.data(), kDirections,
+                        {red.data(), green.data(), blue.data()});
         Rgb sum(0);
         float weights = 0;
         for (std::size_t i = 0; i < kDirections; ++i) {
@@ -227,7 +238,6 @@ class EnvironmentShading::Point {
         return weights > 0 ? sum / weights : Rgb(0);
     }
 
-  private:
     const EnvironmentMap* map_;
     glm::dmat3 to_map_;  // from the shading frame
     Vec3d view_;
@@ -402,8 +412,10 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
                       const float cosine = points.cos_theta_o[i];
                       const LobeForm& form = points.forms(i)[lobe];
                       const PlanMix mix = plans(points.material[i], lobe, form.width);
-                      const int order = choose(mix, shape, cosine, form.azimuth).order;
-                      harmonics.add(mix, cosine, form.azimuth, point.to_map(), order, parts.smooth[at]);
+                      const Choice choice = choose(mix, shape, cosine, form.azimuth);
+                      if (!choice.directions) {
+                          harmonics.add(mix, cosine, form.azimuth, point.to_map(), choice.order, parts.smooth[at]);
+                      }
                   });
     harmonics.finish();
     for_each_lobe(
@@ -411,21 +423,19 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
             const std::uint32_t material = points.material[i];
             const LobeForm& form = points.forms(i)[lobe];
             const double cosine = points.cos_theta_o[i];
-            const bool whole = has_two_widths(shape);
-            if (whole && points.weight(i, lobe) == Rgb(0)) {
+            const bool two_widths = has_two_widths(shape);
+            if (two_widths && points.weight(i, lobe) == Rgb(0)) {
                 return;
             }
-            const Choice choice =
-                whole ? Choice{0, true, true} : choose(plans(material, lobe, form.width), shape, cosine, form.azimuth);
+            const Choice choice = two_widths ? Choice{0, true, true}
+                                             : choose(plans(material, lobe, form.width), shape, cosine, form.azimuth);
             if (!sees_texels(shape)) {
                 parts.spots[at] = spots_->reflected(shape, point.to_map(), point.view());
             }
             Rgb& smooth = parts.smooth[at];
             if (choice.directions) {
-                const bool with_spots = sees_texels(shape);
-                smooth += static_cast<float>(materials_[material].albedo(lobe, form, cosine)) *
-                          (whole ? point.by_directions<kStretchedAcross>(shape, with_spots, true)
-                                 : point.by_directions<kDirectionsAcross>(shape, with_spots, false));
+                smooth = static_cast<float>(materials_[material].albedo(lobe, form, cosine)) *
+                         point.by_directions(shape, sees_texels(shape));
             }
             smooth = glm::max(smooth, Rgb(0));
             (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=

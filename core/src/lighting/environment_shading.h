@@ -45,8 +45,8 @@ class EnvironmentShading {
   private:
     struct Choice {
         int order;
-        bool directions;  // for what this order leaves
-        bool met;         // the tolerance, by the order alone
+        bool directions;  // in place of this order
+        bool met;         // the tolerance, by the order
     };
     /// How a lobe is shaded under a picture.
     struct Plan {
