@@ -15,7 +15,8 @@ class TimeLeft {
 
     /// Records of light that bounces are made from now on.
     void begin_records(double now) { records_start_ = now; }
-    /// Those of all cells as wide as so many pixels are made; step: 32, then half as many each time.
+    /// The records of all cells of one width are made. step: pixels across such a cell, 32 at first and then half as
+    /// many each time.
     void end_grid(int step, double now);
     void end_records() { records_start_ = kNever; }
 
