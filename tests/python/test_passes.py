@@ -244,6 +244,17 @@ def test_a_picture_without_time_lies_between_the_pixels_that_it_has() -> None:
     np.testing.assert_allclose(early["denoising_albedo"][..., 1], albedo, atol=1e-4)
 
 
+def test_light_on_a_colour_without_green_is_the_mean_of_the_others() -> None:
+    """As Cycles has it: green light falls there, and a colour of 0 tells nothing of it."""
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert([0.8, 0.0, 0.4]))
+    scene.add_sphere_light([0, 0, 2], 0.5, [4, 3, 2])
+    passes = shlight.render(from_above(scene), 4, 4, passes=["diffuse_direct"], max_samples=1, max_bounces=0)
+    red, green, blue = np.moveaxis(passes["diffuse_direct"], -1, 0)
+    np.testing.assert_allclose(red, 2 * blue, rtol=1e-5)
+    np.testing.assert_allclose(green, (red + blue) / 2, rtol=1e-5)
+
+
 def test_far_lights_are_told_apart() -> None:
     scene = shlight.Scene()
     scene.add_mesh(FLOOR, FACES)
