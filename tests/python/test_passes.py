@@ -245,7 +245,7 @@ def test_a_picture_without_time_lies_between_the_pixels_that_it_has() -> None:
 
 
 def test_light_on_a_colour_without_green_is_the_mean_of_the_others() -> None:
-    """As Cycles has it: green light falls there, and a colour of 0 tells nothing of it."""
+    """Cycles gives a channel whose colour is 0 the mean of the light in the other channels."""
     scene = shlight.Scene()
     scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert([0.8, 0.0, 0.4]))
     scene.add_sphere_light([0, 0, 2], 0.5, [4, 3, 2])
