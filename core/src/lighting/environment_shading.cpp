@@ -21,7 +21,7 @@ namespace {
 /// Directions that a lobe is summed over, along each side of the unit square, and the widths up to which few and some
 /// of them do: the narrower a lobe is the less the picture changes over it. One of two widths takes the most.
 constexpr std::size_t kFewAcross = 8, kSomeAcross = 16, kManyAcross = 24, kStretchedAcross = 32;
-constexpr double kFewWidth = 0.02, kSomeWidth = 0.06;
+constexpr double kFewWidth = 0.001, kSomeWidth = 0.011;
 
 /// Points of the unit square that these are made of.
 template <std::size_t kAcross>
