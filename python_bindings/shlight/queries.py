@@ -28,7 +28,7 @@ class Hits:
     >>> hits = scene.intersect([[0.5, 0.5, 1], [3, 3, 1]], (0, 0, -1))
     >>> hits.distance
     array([ 1., inf])
-    >>> hits.position[hits.valid]
+    >>> hits.position[hits.valid].round(6)
     array([[0.5, 0.5, 0. ]])
     """
 
