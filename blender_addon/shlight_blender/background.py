@@ -146,7 +146,6 @@ def use_cycles(
     cycles.use_fast_gi = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0
-    cycles.blur_glossy = 0.0
     cycles.use_adaptive_sampling = False
     cycles.use_denoising = denoise
     if denoise:

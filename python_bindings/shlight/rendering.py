@@ -166,6 +166,7 @@ class RenderOptions(TypedDict, total=False):
     max_bounces: int
     glossy_bounces: int | None
     transmission_bounces: int | None
+    filter_glossy: float
     passes: Sequence[str]
     groups: bool
     aovs: bool

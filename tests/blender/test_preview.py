@@ -307,7 +307,7 @@ def test_cycles_has_as_many_bounces(empty_scene: bpy.types.Scene, given: list[st
     kinds = (cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces)
     assert kinds == (*(bounces,) * 3, min(bounces, 1))
     assert scene.shlight.max_bounces == bounces
-    assert (cycles.sample_clamp_indirect, cycles.blur_glossy, cycles.caustics_reflective) == (0.0, 0.0, True)
+    assert (cycles.sample_clamp_indirect, cycles.caustics_reflective) == (0.0, True)
 
 
 def test_without_shadows_is_over_afterwards(empty_scene: bpy.types.Scene) -> None:

@@ -18,6 +18,7 @@
 #include "shlight/cap.h"
 #include "shlight/disk.h"
 #include "shlight/polygon.h"
+#include "shlight/render.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -238,6 +239,17 @@ void expect_met(const Light& light) {
     EXPECT_LE(missed, 2);
     EXPECT_LE(std::abs(weight - sampler.solid_angle()), 1e-3 * weight);
     EXPECT_LE(std::abs(2 * std::numbers::pi * met - sampler.solid_angle()), 2 * std::numbers::pi * 3e-3);
+}
+
+TEST(RenderSampling, FilteredWidthIsTheMeanOverADiffuseLobe) {
+    for (const double filter : {0.05, 0.3, 1.0, 100.0}) {
+        double mean = 0;
+        for (std::uint32_t i = 0; i < kPoints; ++i) {
+            const double cosine = std::sqrt((i + 0.5) / kPoints);  // of directions by the cosine
+            mean += 0.5 * std::sqrt(std::max(1 - cosine / std::numbers::pi / filter, 0.0)) / kPoints;
+        }
+        EXPECT_LE(std::abs(least_width_after_diffuse(filter) - mean), 1e-5) << filter;
+    }
 }
 
 TEST(RenderSampling, RaysMeetLightsWhereTheyAre) {

@@ -148,6 +148,7 @@ SETTINGS = {
     "max_bounces": 1,
     "glossy_bounces": 1,
     "transmission_bounces": None,
+    "filter_glossy": 1.0,
     "passes": ["depth"],
     "groups": True,
     "aovs": True,

@@ -98,6 +98,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "exposure": (NAN,),
     "f0": NO_COLOR,
     "factor": NO_COLOR,
+    "filter_glossy": (-1, 101),
     "filter_width": (0,),
     "first": ([1], [0, 3], [0, 2], [], [0.0], [-1], [[0]]),
     "fisheye_fov": (0,),

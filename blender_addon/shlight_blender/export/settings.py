@@ -42,6 +42,7 @@ def render_settings(scene: Any) -> dict[str, Any]:
         "max_bounces": int(settings.max_bounces),
         "glossy_bounces": int(settings.glossy_bounces),
         "transmission_bounces": int(settings.transmission_bounces),
+        "filter_glossy": float(getattr(cycles, "blur_glossy", 1.0)),
         "exposure": float(getattr(cycles, "film_exposure", 1.0)),
         "threads": int(render.threads) if render.threads_mode == "FIXED" else 0,
     }

@@ -88,6 +88,7 @@ def light(layout: Any, context: Any) -> None:
     cycles = getattr(context.scene, "cycles", None)
     if cycles is not None:
         column.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
+        layout.prop(cycles, "blur_glossy")
     layout.prop(context.scene.shlight, "preview_max_bounces", text="Viewport")
 
 

@@ -185,6 +185,8 @@ LobeShape with_form(const LobeShape& shape, const LobeForm& form);
 LobeShape with_azimuth(const LobeShape& shape, double azimuth);
 /// The shape with another width; unchanged if it has only one.
 LobeShape with_width(const LobeShape& shape, double width);
+/// The form of microfacets that are at least so wide; unchanged if the shape is another's.
+LobeForm widened(const LobeShape& shape, const LobeForm& form, double least_width);
 /// Whether the shape has a peak: it is then shaded in a boosted frame, and lights may exclude it ("visible to glossy
 /// rays").
 bool is_glossy(const LobeShape& shape);

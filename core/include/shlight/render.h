@@ -76,6 +76,9 @@ struct RenderSettings {
     /// that a diffuse surface reflects has a count of its own.
     int glossy_bounces = kMostBounces;
     int transmission_bounces = kMostBounces;
+    /// 0 … 100: light that diffuse surfaces reflect has come by glossy lobes that are widened as Cycles' Filter Glossy
+    /// does, and by mirrors as by such lobes; 0: as they are. See least_width_after_diffuse().
+    double filter_glossy = 0;
     PassSettings passes;
 };
 
@@ -89,11 +92,16 @@ struct RenderWatch {
     PictureUpdate on_update = {};
 };
 
+/// The width α of the narrowest lobes of microfacets that rays from a diffuse surface meet, with a filter above 0.
+/// Cycles takes √(1 - p/filter)/2 for a path whose least probable direction had the density p, and 0 where p is larger
+/// than the filter; this is the mean of that over directions of a diffuse lobe, p = cosθ/π.
+double least_width_after_diffuse(double filter_glossy);
+
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
 /// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^14, more than 2^22 of both in the
-/// first pass, bounces of any kind outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels; and as
-/// PassLayout's constructor.
+/// first pass, bounces of any kind outside 0 … 1024, filter_glossy outside 0 … 100, threads < 0, width or height < 1,
+/// or more than 2^28 pixels; and as PassLayout's constructor.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha

@@ -23,13 +23,14 @@ auto settings_of(const Picture& picture) {
     const RenderSettings& own = picture.settings;
     return std::tuple(own.order, own.tolerance, own.sampling.noise_threshold, own.shadow_rays > 0, own.seed,
                       own.transparent_bounces, own.max_bounces, own.glossy_bounces, own.transmission_bounces,
-                      picture.stored_parts());
+                      own.filter_glossy, picture.stored_parts());
 }
 
 StoredLight no_light(const Picture& picture) {
     const auto bounces = static_cast<std::size_t>(picture.settings.max_bounces);
     const std::size_t parts = picture.stored_parts();
-    return {parts, {}, LightCells(*picture.scene, picture.lighting.materials, bounces * parts)};
+    return {
+        parts, {}, LightCells(*picture.scene, picture.lighting.materials, picture.filtered_width(), bounces * parts)};
 }
 
 }  // namespace

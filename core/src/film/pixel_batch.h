@@ -86,6 +86,14 @@ struct Picture {
     std::vector<glm::dvec2> filter_places;  ///< likewise as the filter spreads them, from the pixel's middle
     bool takes_differences;                 ///< whether any material looks at neighbouring camera rays
     LightingScene lighting;
+    std::optional<LightingScene> filtered;  ///< see lighting_of_records(); none: as `lighting`
+
+    /// Width of the narrowest lobes that rays of records meet.
+    double filtered_width() const {
+        return settings.filter_glossy > 0 ? least_width_after_diffuse(settings.filter_glossy) : 0.0;
+    }
+    /// The lights and materials that rays of records meet.
+    const LightingScene& lighting_of_records() const { return filtered ? *filtered : lighting; }
 };
 
 /// The place of a part of the light among the passes of a pixel.

@@ -79,7 +79,7 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
           seen.scatters = false;
           return Finder(*picture_, seen);
       }),
-      gatherer_(*picture.scene, picture.lighting, paths_, picture.settings.shadow_rays > 0, stored.cells,
+      gatherer_(*picture.scene, picture.lighting_of_records(), paths_, picture.settings.shadow_rays > 0, stored.cells,
                 stored.parts > 1 ? picture.parts : kWholeLight) {
     stored.records.begin_picture();
     double sum = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@ constexpr std::int64_t kMostShadowRays = 1 << 14;
 
 constexpr double kLeastFilter = 0.001;
 constexpr double kWidestFilter = 100;
+constexpr double kMostFilter = 100;
 
 void check_range(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
     if (value < least || value > most) {
@@ -45,6 +47,13 @@ PixelSampling PixelSampling::refined(int samples) {
     const bool can_grow = samples > 1 && samples <= kMostPixelSamples / kTimes;
     const int most = can_grow ? kTimes * static_cast<int>(std::bit_ceil(static_cast<unsigned>(samples))) : samples;
     return {.first_samples = samples, .min_samples = samples, .max_samples = most};
+}
+
+double least_width_after_diffuse(double filter_glossy) {
+    // √(1 - kc)/2 times the density 2c of c = cosθ, integrated up to where the root ends, by u = 1 - kc.
+    const double k = 1 / (std::numbers::pi * filter_glossy);
+    const double end = std::max(1 - k, 0.0);
+    return (2 * (1 - std::pow(end, 1.5)) / 3 - 2 * (1 - std::pow(end, 2.5)) / 5) / (k * k);
 }
 
 void check_render(const RenderSettings& settings, int width, int height) {
@@ -73,6 +82,9 @@ void check_render(const RenderSettings& settings, int width, int height) {
     check_range("max_bounces", settings.max_bounces, 0, kMostBounces);
     check_range("glossy_bounces", settings.glossy_bounces, 0, kMostBounces);
     check_range("transmission_bounces", settings.transmission_bounces, 0, kMostBounces);
+    if (!(settings.filter_glossy >= 0 && settings.filter_glossy <= kMostFilter)) {
+        reject("filter_glossy must be 0 … 100");
+    }
     check_range("threads", settings.threads, 0, std::numeric_limits<int>::max());
     const PassLayout layout(settings.passes);
 }

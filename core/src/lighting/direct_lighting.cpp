@@ -20,15 +20,28 @@ constexpr std::size_t kValues = std::size_t{1} << 21;
 constexpr std::size_t kMostHits = 4096;
 constexpr std::size_t kLeastHits = 64;
 
+/// A lobe whose width varies has none yet.
+void widen(Lobe& lobe, double least_width) {
+    const LobeForm own = lobe_form(lobe.shape);
+    const LobeForm wide = widened(lobe.shape, own, least_width);
+    if (lobe.varying_width == 0 && wide.width > own.width) {
+        lobe.shape = with_form(lobe.shape, wide);
+        lobe.fit = is_anisotropic(lobe.shape) ? nullptr : boosted_fit(lobe.shape, lobe.only_order);
+    }
+}
+
 }  // namespace
 
 std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> materials, int order, double tolerance,
-                                              const Stopped& stopped) {
+                                              const Stopped& stopped, double least_width) {
     std::vector<MaterialLobes> lobes;
     for (const Material& material : materials) {
         end_if(stopped);
-        lobes.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), order,
-                           tolerance, material.light_set);
+        std::vector<Lobe> own = material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader);
+        for (Lobe& lobe : own) {
+            widen(lobe, least_width);
+        }
+        lobes.emplace_back(own, order, tolerance, material.light_set);
     }
     end_if(stopped);
     return lobes;

@@ -37,9 +37,10 @@
 
 namespace shlight {
 
-/// order, tolerance: of RenderSettings. Throws RenderCancelled once stopped.
+/// order, tolerance: of RenderSettings. Lobes of microfacets are at least so wide, but for those whose width varies.
+/// Throws RenderCancelled once stopped.
 std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> materials, int order, double tolerance,
-                                              const Stopped& stopped);
+                                              const Stopped& stopped, double least_width = 0);
 
 /// The lights and materials of a scene, prepared for DirectLighting. Any number of threads may read it.
 struct LightingScene {

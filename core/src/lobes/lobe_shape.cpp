@@ -78,6 +78,11 @@ LobeShape with_width(const LobeShape& shape, double width) {
     return result;
 }
 
+LobeForm widened(const LobeShape& shape, const LobeForm& form, double least_width) {
+    const auto least = std::holds_alternative<GgxShape>(shape) ? static_cast<float>(least_width) : 0.0F;
+    return {std::max(form.width, least), form.across > 0 ? std::max(form.across, least) : form.across, form.azimuth};
+}
+
 bool is_glossy(const LobeShape& shape) {
     return std::visit([](const auto& s) { return s.is_glossy(); }, shape);
 }

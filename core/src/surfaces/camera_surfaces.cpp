@@ -31,7 +31,7 @@ void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::size_
     rays_ = rays;
     const Sink sink = {light, hits.apart, rays_per_group, 1, settings_.max_bounces};
     Segment beginning = {0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}, kDiffuseRay};
-    beginning.diffused = true;
+    beginning.diffused = beginning.filtered = true;
     trace(beginning, {}, sink, hits);
 }
 
@@ -364,7 +364,7 @@ LobeShape CameraSurfaces::varied(const Surface& surface, const ShadedLobe& lobe,
             form.azimuth -= static_cast<float>(std::numbers::pi / 2);
         }
     }
-    return with_form(lobe.shape, form);
+    return with_form(lobe.shape, surface.filtered ? widened(lobe.shape, form, settings_.least_width) : form);
 }
 
 /// Cycles' shadow of a bump is the same for a smooth normal and its opposite.
@@ -385,10 +385,12 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             }
             return;
         }
+        const std::span<const Lobe> fixed = materials_[surface.point.material].lobes();
         for (const ShadedLobe& lobe : shader->lobes) {
             const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
             const Vec3d own = known ? lobes.back().viewers_normal() : normal(surface, lobe.normal);
-            const LobeShape shape = lobe.alpha ? varied(surface, lobe, own) : laid_out(surface, lobe.shape);
+            const LobeShape shape =
+                lobe.alpha ? varied(surface, lobe, own) : laid_out(surface, fixed[lobes.size()].shape);
             const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
             lobes.push_back({shape, lobe.translucent ? -own : own, weight * color(surface, lobe.weight),
                              lobe.several_bounces, lobe.translucent,

@@ -52,6 +52,8 @@ struct PathSettings {
     bool scatters = true;                                ///< false: paths end at lobes whose direct light counts apart
 };
 
+    double filter_glossy = 0;                            ///< see RenderSettings
+    double least_width = 0;  ///< of lobes of microfacets that vary and that are met by a filtered path
 /// Camera rays beside another, as far away as its share of the pixel is wide.
 struct NeighbourRays {
     Ray right, below;
@@ -115,6 +117,7 @@ class CameraSurfaces {
         bool diffused = false;                        ///< by a surface before
         std::optional<std::uint32_t> exit_lobe{};     ///< it ends where light enters a body for this lobe
         std::optional<std::uint32_t> light_set{};     ///< of the surface that has reflected it; see MeshUse
+        bool filtered = false;                        ///< it has come by an improbable way, see filter_glossy
         /// [1/m] of the bodies that it runs in, as far as they are known, and of those behind its end.
         Rgb absorption{0}, absorption_beyond{0};
         double travelled = 0;  ///< from the camera to where `whole` begins [m]
@@ -140,19 +143,21 @@ class CameraSurfaces {
                     {},
                     {},
                     through ? absorption_beyond : absorption};
+                    filtered,
         }
         Segment from(const Material& material) const {
             Segment own = *this;
             own.light_set = material.light_set;
             return own;
         }
-        Segment drawn(bool rough, bool broad) const {
+        Segment drawn(bool rough, bool broad, bool improbable = false) const {
             Segment own = *this;
             own.is_drawn = is_drawn || rough;
             own.is_broad = broad;
             return own;
         }
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
+            own.filtered = filtered || improbable;
         /// Bounces of light that is emitted where it ends.
         std::uint32_t emitted_bounces() const { return bounces - (source == RaySource::mirror ? 1 : 0); }
         /// The kind of light that it meets. camera: of what the camera itself sees.

@@ -27,24 +27,30 @@ int level(const SurfacePoint& end, double length) {
     return WorldLattice::level(kCellWidth * std::max(length, end.error));
 }
 
-bool is_sharp(const SurfaceShader* shader, std::span<const Lobe> lobes) {
-    return (shader != nullptr && (shader->transparency || !shader->refractions.empty())) ||
-           std::any_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) {
-               return is_glossy(lobe.shape) && lobe_width(lobe.shape) < LightCells::kLeastWidth;
-           });
+bool lets_through(const SurfaceShader* shader) {
+    return shader != nullptr && (shader->transparency || !shader->refractions.empty());
+}
+
+/// least_width: that lobes are widened to.
+bool has_narrower(std::span<const Lobe> lobes, double width, double least_width) {
+    return std::any_of(lobes.begin(), lobes.end(), [&](const Lobe& lobe) {
+        return is_glossy(lobe.shape) && double{widened(lobe.shape, lobe_form(lobe.shape), least_width).width} < width;
+    });
 }
 
 }  // namespace
 
-LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t parts)
+LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, double filtered_width,
+                       std::size_t parts)
     : lattice_(scene), parts_(parts) {
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const std::span<const Lobe> lobes = materials[i].lobes();
         const bool is_diffuse =
             std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_glossy(lobe.shape); });
-        looks_.push_back(is_sharp(scene.materials()[i].shader.get(), lobes) ? Look::sharp
-                         : is_diffuse                                       ? Look::everywhere_alike
-                                                                            : Look::by_view);
+        const bool is_sharp =
+            lets_through(scene.materials()[i].shader.get()) || has_narrower(lobes, kLeastWidth, filtered_width);
+        looks_.push_back(is_sharp ? Look::sharp : is_diffuse ? Look::everywhere_alike : Look::by_view);
+        is_filtered_.push_back(has_narrower(lobes, filtered_width, 0) ? 1 : 0);
     }
 }
 

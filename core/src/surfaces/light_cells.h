@@ -25,12 +25,16 @@ class LightCells {
     /// Lobes this wide, or wider, need no sharper picture of what they reflect.
     static constexpr double kLeastWidth = 0.05;
 
-    /// scene: must outlive this; parts: that light is told apart by, see StoredLight.
-    LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t parts);
+    /// scene: must outlive this; filtered_width: of the narrowest lobes that rays from diffuse surfaces meet; parts:
+    /// that light is told apart by, see StoredLight.
+    LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, double filtered_width,
+               std::size_t parts);
 
     /// The cell that a ray of some length ends in. Mirrors and what light passes through look different from
     /// everywhere: false.
     bool find(const SurfacePoint& end, const Vec3f& direction, double length, WorldCell& key) const;
+    /// Whether rays from diffuse surfaces see a material otherwise than others do.
+    bool is_filtered(std::uint32_t material) const { return is_filtered_[material] != 0; }
     /// A ray that tells of a cell what the ray tells that `end` and `direction` are of: it meets the cell in a place of
     /// its own, by the number. None if the surface is not that wide.
     std::optional<Ray> sample(const WorldCell& key, const SurfacePoint& end, const Vec3f& direction, double length,
@@ -59,7 +63,8 @@ class LightCells {
 
     WorldLattice lattice_;
     std::size_t parts_;
-    std::vector<Look> looks_;  // of materials
+    std::vector<Look> looks_;  // of materials, as rays from diffuse surfaces see them
+    std::vector<std::uint8_t> is_filtered_;
     std::unordered_map<WorldCell, Cell, WorldCellHash> cells_;
     std::vector<Rgb> light_;
 };
