@@ -40,6 +40,39 @@ def test_depths_of_gloss_and_glass_are_those_of_cycles(studio: Any, glossy: int,
     compare(studio)
 
 
+def test_highlights_on_a_floor_are_filtered_as_in_cycles(studio: Any) -> None:
+    """The sun shines on a mirror, on polished metal and on one whose roughness varies."""
+    inputs = {"Base Color": (0.9, 0.7, 0.4), "Metallic": 1.0}
+    metals = [
+        studio.material("ShaderNodeBsdfPrincipled", "Metal", **inputs, Roughness=each) for each in (0.0, 0.2, 0.2)
+    ]
+    tree = metals[2].node_tree
+    noise = tree.nodes.new("ShaderNodeTexNoise")
+    tree.links.new(noise.outputs[0], tree.nodes["Principled BSDF"].inputs["Roughness"])
+    studio.plane(8, studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.6, 0.6, 0.6)))
+    for i, metal in enumerate(metals):
+        studio.ball(0.6, metal, location=(1.4 * i - 1.4, 0, 0.6))
+    studio.lamp("SUN", 3, (0, 0, 5), rotation_euler=(0.6, 0.3, 0), angle=0.009)
+    studio.camera(location=(0, -6, 4), target=(0, 0, 0.3))
+    studio.scene.shlight.max_bounces, studio.scene.cycles.blur_glossy = 3, 1.0
+    compare(studio)
+
+
+@pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
+def test_frosted_glass_before_a_sun_and_a_point(studio: Any, distribution: str) -> None:
+    glass = studio.material(
+        "ShaderNodeBsdfGlass", "Glass", Color=(1, 0.9, 0.8), Roughness=0.5, IOR=1.45, distribution=distribution
+    )
+    studio.plane(8, studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.6, 0.6, 0.6)))
+    studio.box((3, 0.1, 2), glass, "Pane", location=(0, 0, 1.2))
+    studio.lamp("SUN", 2, (0, 0, 5), rotation_euler=(-0.9, 0.3, 0), angle=0.009)
+    studio.lamp("POINT", 80, (0.5, 1.5, 1.5), shadow_soft_size=0.0)
+    studio.plain_world((0.05, 0.06, 0.08))
+    studio.camera((0, -6, 3), (0, 0, 1))
+    studio.scene.shlight.max_bounces = 4
+    compare(studio, mean=1e-2, error=3e-2)
+
+
 @pytest.mark.parametrize("bounces", [pytest.param(0, marks=pytest.mark.slow), 2])
 def test_translucent_surfaces_take_light_from_behind(studio: Any, bounces: int) -> None:
     """A sheet before a lamp and the sky, a smooth ball around another lamp, and a mix of both sides."""

@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
+#include "lobes/refraction.h"
 #include "random_input.h"
 #include "shlight/lobe_table.h"
 #include "shlight/sampling.h"
@@ -107,6 +109,30 @@ TEST(LobeRays, AreWorthWhatTheLobeReflects) {
             const double density = lobe_density(shape, view, directions[i]);
             EXPECT_LE(std::abs(values[i] - value), tolerance * value + 1e-6) << i;
             EXPECT_LE(std::abs(densities[i] - density), tolerance * density + 1e-6) << i;
+        }
+    }
+}
+
+/// Integrals over all directions against the means of those that are drawn.
+TEST(LobeRays, AnInterfaceHasTheLightOfItsRays) {
+    constexpr std::uint32_t kDrawn = 1 << 16;
+    const Vec3d view = glm::normalize(Vec3d(0.6, 0, 0.5));
+    for (const auto reflection : {InterfaceReflection::drawn, InterfaceReflection::apart, InterfaceReflection::none}) {
+        for (const double ior : {1.45, 1 / 1.45}) {
+            Vec3d drawn(0);
+            Vec3d integral(0);
+            for (std::uint32_t i = 0; i < kDrawn; ++i) {
+                const glm::dvec2 point = SobolSequence(3).point(i);
+                const InterfaceRay ray = sample_interface(0.3, ior, view, point, reflection, sobol_beyond(i, 3).x);
+                drawn += ray.weight * Vec3d(1, ray.way.x, ray.way.z) / (1.0 * kDrawn);
+                const double up = 2 * point.x - 1;
+                const double across = std::sqrt(1 - up * up);
+                const double azimuth = 2 * std::numbers::pi * point.y;
+                const Vec3d way(across * std::cos(azimuth), across * std::sin(azimuth), up);
+                integral += interface_value(0.3, ior, view, way, reflection) * Vec3d(1, way.x, way.z) *
+                            (4 * std::numbers::pi / kDrawn);
+            }
+            EXPECT_LE(glm::distance(drawn, integral), 2e-3) << ior;
         }
     }
 }

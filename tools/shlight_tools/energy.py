@@ -43,6 +43,16 @@ def _visible_normals(view: Array, alpha: float) -> Array:
     return unit
 
 
+def _seen_share(alpha: float, cosine: float, other: Array) -> Array:
+    """G2 / G1 of the viewer's side, by the cosine of the other direction; 0 where that is 0."""
+
+    def smith(c: Any) -> Array:
+        return np.asarray(0.5 * (np.sqrt(1.0 + alpha * alpha * np.maximum(1.0 / np.square(c) - 1.0, 0.0)) - 1.0))
+
+    own, seen = 1.0 + smith(cosine), other > 0.0
+    return np.where(seen, own / (own + smith(np.where(seen, other, 1.0))), 0.0)
+
+
 def _reflected(roughness: float, cosine: float) -> tuple[Array, Array, Array]:
     """For each visible normal: its cosine to the view, whether the light goes up, and G2 / G1."""
     alpha = roughness * roughness
@@ -52,12 +62,7 @@ def _reflected(roughness: float, cosine: float) -> tuple[Array, Array, Array]:
     height = 2.0 * along * normals[:, 2] - cosine
     up = height > 0.0
 
-    def smith(c: Any) -> Array:
-        return np.asarray(0.5 * (np.sqrt(1.0 + alpha * alpha * np.maximum(1.0 / np.square(c) - 1.0, 0.0)) - 1.0))
-
-    own = smith(cosine)
-    share = np.where(up, (1.0 + own) / (1.0 + own + smith(np.where(up, height, 1.0))), 0.0)
-    return along, up, share
+    return along, up, _seen_share(alpha, cosine, np.where(up, height, 0.0))
 
 
 def _steps(count: int) -> Array:
@@ -69,6 +74,39 @@ def _dielectric(cosine: Array, ior: Array) -> Array:
     a = (g - cosine) / (g + cosine)
     b = (cosine * (g + cosine) - 1.0) / (cosine * (g - cosine) + 1.0)
     return np.asarray(0.5 * a * a * (1.0 + b * b))
+
+
+def _kept(roughness: float, cosine: float, ior: float) -> float:
+    """The share of light that an interface reflects or lets through at once. ior: of the other side."""
+    along, _, reflected = _reflected(roughness, cosine)
+    alpha = roughness * roughness
+    height = _visible_normals(np.array([np.sqrt(1.0 - cosine * cosine), 0.0, cosine]), alpha)[:, 2]
+    square = 1.0 - (1.0 - along * along) / (ior * ior)  # of the cosine at which light goes on
+    passes = square > 0.0
+    fresnel = np.where(passes, _dielectric(along, np.asarray(np.where(passes, ior, 2.0))), 1.0)
+    depth = cosine / ior - (along / ior - np.sqrt(np.maximum(square, 0.0))) * height
+    passed = _seen_share(alpha, cosine, np.where(passes, np.maximum(depth, 0.0), 0.0))
+    return float((fresnel * reflected + (1.0 - fresnel) * passed).mean())
+
+
+def _indices(inside: bool) -> Array:
+    root = np.clip(np.arange(16) / 15, LEAST, LARGEST_PARAMETER) ** 2
+    outer = (1.0 + root) / (1.0 - root)
+    return np.asarray(1.0 / outer if inside else outer)
+
+
+def interface_table(inside: bool) -> Array:
+    """This share over the parameter of the index (outermost), cosine and roughness."""
+    return np.array([[[_kept(r, c, n) for r in _steps(16)] for c in _steps(16)] for n in _indices(inside)])
+
+
+def mean_interface_table(inside: bool) -> Array:
+    """The same over all views, weighted by their cosine."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    views = list(zip(0.5 * (nodes + 1.0), 0.5 * weights, strict=True))
+    return np.array(
+        [[sum(2.0 * w * c * _kept(r, c, n) for c, w in views) for r in _steps(16)] for n in _indices(inside)]
+    )
 
 
 def albedo_table() -> Array:
@@ -106,7 +144,15 @@ def rise_table() -> Array:
     return values
 
 
-TABLES: dict[str, Callable[[], Array]] = {"albedo": albedo_table, "mean_albedo": mean_albedo_table, "rise": rise_table}
+TABLES: dict[str, Callable[[], Array]] = {
+    "albedo": albedo_table,
+    "mean_albedo": mean_albedo_table,
+    "rise": rise_table,
+    "interface": lambda: interface_table(False),
+    "interface_inside": lambda: interface_table(True),
+    "mean_interface": lambda: mean_interface_table(False),
+    "mean_interface_inside": lambda: mean_interface_table(True),
+}
 
 if __name__ == "__main__":
     np.savez(KEPT, **{name: compute().astype(np.float32) for name, compute in TABLES.items()})

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -11,10 +12,16 @@
 namespace shlight {
 namespace {
 
-/// G₂ ÷ G₁ of the viewer's side: the share of microfacets that the other direction sees. cosine: of that direction.
-double seen_share(double alpha, double cosine) {
+/// Smith's Λ of GGX.
+double hidden(double alpha, double cosine) {
     const double square = cosine * cosine;
-    return 2 / (1 + std::sqrt(1 + alpha * alpha * (1 - square) / square));
+    return (std::sqrt(1 + alpha * alpha * (1 - square) / square) - 1) / 2;
+}
+
+/// G₂ ÷ G₁ of the viewer's side, with masking and shadowing by the same heights (Heitz 2014).
+double seen_share(double alpha, double view_cosine, double cosine) {
+    const double seen = 1 + hidden(alpha, view_cosine);
+    return seen / (seen + hidden(alpha, cosine));
 }
 
 }  // namespace
@@ -30,6 +37,25 @@ double interface_reflectance(double cosine, double ior) {
     return 0.5 * a * a * (1 + b * b);
 }
 
+double interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way, InterfaceReflection reflection) {
+    const bool reflected = way.z > 0;
+    const Vec3d sum = reflected ? view + way : view + ior * way;
+    const Vec3d half = glm::normalize(sum.z < 0 ? -sum : sum);
+    const double cosine = glm::dot(view, half);
+    const double beyond = -glm::dot(way, half);
+    const double reflectance = interface_reflectance(cosine, ior);
+    const double passed = reflection == InterfaceReflection::none && reflectance < 1 ? 1.0 : 1 - reflectance;
+    const double drawn = reflection == InterfaceReflection::drawn ? reflectance : 0.0;
+    if (!(cosine > 0) || (beyond > 0) == reflected) {
+        return 0;
+    }
+    // The sine is used, since 1 - cos² would lose the digits that decide the peak of a narrow lobe.
+    const double across = half.x * half.x + half.y * half.y + alpha * alpha * half.z * half.z;
+    const double normals = alpha * alpha / (std::numbers::pi * across * across);
+    const double seen = normals / (1 + hidden(alpha, view.z) + hidden(alpha, way.z)) / view.z;
+    return reflected ? drawn * seen / 4 : passed * seen * cosine * ior * ior * beyond / glm::dot(sum, sum);
+}
+
 InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,
                               InterfaceReflection reflection, double choice) {
     const Vec3d mirrored_way = sample_lobe(GgxShape{alpha}, view, point);
@@ -38,7 +64,7 @@ InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const
     const double reflectance = interface_reflectance(cosine, ior);
     if (reflection == InterfaceReflection::drawn && choice < reflectance) {
         const bool above = mirrored_way.z > 0;
-        return {mirrored_way, above ? seen_share(alpha, mirrored_way.z) : 0.0, true};
+        return {mirrored_way, above ? seen_share(alpha, view.z, mirrored_way.z) : 0.0, true};
     }
     const double inside = 1 - (1 - cosine * cosine) / (ior * ior);
     if (inside <= 0) {
@@ -46,7 +72,7 @@ InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const
     }
     const Vec3d way = (cosine / ior - std::sqrt(inside)) * normal - view / ior;
     const double passed = reflection == InterfaceReflection::apart ? 1 - reflectance : 1.0;
-    return {way, way.z < 0 ? passed * seen_share(alpha, way.z) : 0.0, false};
+    return {way, way.z < 0 ? passed * seen_share(alpha, view.z, way.z) : 0.0, false};
 }
 
 }  // namespace shlight

@@ -25,6 +25,10 @@ struct InterfaceRay {
 /// Whether an interface's reflection takes its share of drawn rays, is brought by others, or there is none.
 enum class InterfaceReflection : std::uint8_t { drawn, apart, none };
 
+/// f·cos of an interface: the weight of the directions of sample_interface() times their density. way: unit, in the
+/// shading frame; ior: not 1.
+double interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way, InterfaceReflection reflection);
+
 /// A direction through the interface. alpha: of its GGX distribution, whose visible normals the point draws; view:
 /// unit, in the xz-plane, above the horizon; choice: of reflection where it is drawn.
 InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,

@@ -162,7 +162,7 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
         return;
     }
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
-    const Rgb radiance = lamps.radiance(part, surface, segment.light_set, by_group_);
+    const Rgb radiance = lamps.radiance(part, surface, segment.light_set, by_group_, segment.least_lamp);
     sink.add(segment, segment.emitted_bounces(), segment.throughput * radiance);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
         sink.apart.add(sink.in_apart(segment, segment.emitted_bounces()), segment.met(LightKind::emission),

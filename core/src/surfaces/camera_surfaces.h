@@ -16,8 +16,10 @@
 #include <vector>
 
 #include "lobes/material_lobes.h"
+#include "lobes/refraction.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
+#include "surfaces/lamp_drawer.h"
 #include "surfaces/placed_meshes.h"
 #include "surfaces/stored_light.h"
 #include "surfaces/subsurface_walks.h"
@@ -50,10 +52,10 @@ struct PathSettings {
     std::uint32_t glossy_bounces, transmission_bounces;  ///< of these, at most
     const StoredLight* stored = nullptr;                 ///< outlives this; null: none
     bool scatters = true;                                ///< false: paths end at lobes whose direct light counts apart
-};
-
     double filter_glossy = 0;                            ///< see RenderSettings
     double least_width = 0;  ///< of lobes of microfacets that vary and that are met by a filtered path
+};
+
 /// Camera rays beside another, as far away as its share of the pixel is wide.
 struct NeighbourRays {
     Ray right, below;
@@ -115,12 +117,13 @@ class CameraSurfaces {
         bool is_drawn = false;                        ///< by a lobe, or one before, from which directions are drawn
         bool is_broad = false;                        ///< its end need not be seen sharply
         bool diffused = false;                        ///< by a surface before
+        bool filtered = false;                        ///< it has come by an improbable way, see filter_glossy
         std::optional<std::uint32_t> exit_lobe{};     ///< it ends where light enters a body for this lobe
         std::optional<std::uint32_t> light_set{};     ///< of the surface that has reflected it; see MeshUse
-        bool filtered = false;                        ///< it has come by an improbable way, see filter_glossy
         /// [1/m] of the bodies that it runs in, as far as they are known, and of those behind its end.
         Rgb absorption{0}, absorption_beyond{0};
-        double travelled = 0;  ///< from the camera to where `whole` begins [m]
+        double travelled = 0;   ///< from the camera to where `whole` begins [m]
+        double least_lamp = 0;  ///< [sr], of those that it sees; see add_narrow_lamps()
 
         bool sees_lights() const { return source != RaySource::scattered && source != RaySource::held_out; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -140,10 +143,10 @@ class CameraSurfaces {
                     is_drawn,
                     false,
                     diffused || by == PathKind::diffuse,
+                    filtered,
                     {},
                     {},
                     through ? absorption_beyond : absorption};
-                    filtered,
         }
         Segment from(const Material& material) const {
             Segment own = *this;
@@ -154,10 +157,10 @@ class CameraSurfaces {
             Segment own = *this;
             own.is_drawn = is_drawn || rough;
             own.is_broad = broad;
+            own.filtered = filtered || improbable;
             return own;
         }
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
-            own.filtered = filtered || improbable;
         /// Bounces of light that is emitted where it ends.
         std::uint32_t emitted_bounces() const { return bounces - (source == RaySource::mirror ? 1 : 0); }
         /// The kind of light that it meets. camera: of what the camera itself sees.
@@ -313,10 +316,25 @@ class CameraSurfaces {
     void add_hits(const Sink& sink, Hits& hits);
     void add_hit(const Surface& surface, const Sink& sink, Hits& hits);
     /// A path through an interface, or inside back from it.
-    void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number);
+    void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number, const Sink& sink);
     double ior(const Surface& surface, const ShadedRefraction& refraction) const;
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
-                 const Division& division);
+                 const Division& division, const Sink& sink);
+    /// A rough interface, as one path meets it.
+    struct Interface {
+        double alpha, ior;
+        InterfaceReflection reflection;
+        ShadingFrame frame;
+        Vec3d view;  ///< in the frame
+
+        bool is_rough() const;
+        /// [sr], of the lamps that its rays are likely to meet.
+        double least_lamp() const;
+    };
+    /// Adds the light of lamps that are narrower than what a rough interface spreads. Its rays see the others.
+    /// path: to the side of `frame`, of which the lamps are.
+    void add_narrow_lamps(const Surface& surface, const Interface& interface, const ShadingFrame& frame,
+                          const Segment& path, std::uint32_t seed, std::uint32_t number, const Sink& sink);
     Division division(const Surface& surface, double share, double width) const;
     /// Unit. result: see ShadedLobe::normal.
     Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& result) const;
@@ -348,6 +366,7 @@ class CameraSurfaces {
     std::vector<Rgb> weights_;
     std::vector<LobeForm> forms_;
     std::vector<Rgb> recorded_;  // see StoredLight
+    LampDrawer drawer_;
 };
 
 }  // namespace shlight

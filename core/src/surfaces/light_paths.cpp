@@ -3,6 +3,7 @@
 // Where the paths of CameraSurfaces go on.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lobes/refraction.h"
 #include "shlight/sampling.h"
@@ -37,12 +38,17 @@ constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
 /// The least share of light for which two paths share a broad lobe.
 constexpr double kShared = 0.04;
-/// Width of an interface whose rays differ by their side alone.
 /// The density ÷ the filter of a direction in which Cycles would widen lobes to about half as much as by a filter of 0.
 constexpr double kFiltered = 0.75;
+/// Width of an interface whose rays differ by their side alone.
 constexpr double kSmooth = 1e-3;
-/// Seeds of directions through interfaces, beside those of lobes.
+/// 1 ± this of an index, whose rays go straight on at any roughness.
+constexpr double kNoBend = 1e-3;
+/// Lamps that each path looks at.
+constexpr std::size_t kMostLamps = 4;
+/// Seeds of directions through interfaces, beside those of lobes, and of those to lamps.
 constexpr std::uint32_t kRefractionSeed = 0x80000000U;
+constexpr std::uint32_t kLampSeed = 0x40000000U;
 
 }  // namespace
 
@@ -50,7 +56,7 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
         shader != nullptr && settings_.max_bounces > 0 && !surface.exit_lobe) {
         for (std::uint32_t i = 0; i < shader->refractions.size(); ++i) {
-            refract(surface, shader->refractions[i], i);
+            refract(surface, shader->refractions[i], i, sink);
         }
     }
     const auto lobes = materials_[surface.point.material].lobes();
@@ -76,33 +82,59 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
     }
 }
 
-void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number) {
+void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number,
+                             const Sink& sink) {
     const double share = average(surface.throughput * color(surface, refraction.weight));
     if (share > 0) {
         const std::uint32_t seed = hash(rays_[surface.ray].seed, hash(surface.bounces, kRefractionSeed + number));
         Division paths = division(surface, share, double{width(surface, refraction.alpha)});
         for (; paths.path < paths.paths; ++paths.path) {
-            refract(surface, refraction, seed, paths);
+            refract(surface, refraction, seed, paths, sink);
         }
     }
 }
 
+bool CameraSurfaces::Interface::is_rough() const {
+    return alpha > kSmooth && std::abs(ior - 1) > kNoBend;
+}
+
+double CameraSurfaces::Interface::least_lamp() const {
+    return is_rough() ? std::numbers::pi * alpha * alpha : 0.0;
+}
+
 /// A bend of the normal away from the viewer's side of the surface counts as none.
 void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
-                             const Division& division) {
+                             const Division& division, const Sink& sink) {
     const Vec3d bent = normal(surface, refraction.normal);
     const Vec3d& flat = surface.point.geometric_normal;
     const ShadingFrame frame =
         shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
-    const Vec3d view = in_frame(view_cosine(frame.z, surface.towards_viewer));
     const InterfaceReflection reflection = !refraction.reflects ? InterfaceReflection::none
                                            : scene_->placed().is_back(surface.hit, surface.towards_viewer)
                                                ? InterfaceReflection::drawn
                                                : InterfaceReflection::apart;
-    const double alpha = width(surface, refraction.alpha);
+    const Interface interface = {double{width(surface, refraction.alpha)}, ior(surface, refraction), reflection, frame,
+                                 in_frame(view_cosine(frame.z, surface.towards_viewer))};
+    const Rgb weight = surface.throughput * color(surface, refraction.weight) / static_cast<float>(division.paths);
     const std::uint32_t sample = rays_[surface.ray].sample * division.paths + division.path;
+    const auto path = [&](bool reflected, const Rgb& share, const Ray& way) {
+        Segment next =
+            surface
+                .next(RaySource::mirror, reflected ? PathKind::glossy : PathKind::transmission, !reflected, share, way)
+                .from(scene_->materials()[surface.point.material])
+                .drawn(interface.alpha > kSmooth, division.is_broad);
+        next.least_lamp = interface.least_lamp();
+        return next;
+    };
+    if (interface.is_rough()) {
+        const ShadingFrame behind = shading_frame(surface.point.position, -frame.z, -frame.z);
+        add_narrow_lamps(surface, interface, behind, path(false, weight, {}), hash(seed, kLampSeed), sample, sink);
+        if (reflection == InterfaceReflection::drawn) {
+            add_narrow_lamps(surface, interface, frame, path(true, weight, {}), hash(seed, ~kLampSeed), sample, sink);
+        }
+    }
     const InterfaceRay sampled =
-        sample_interface(alpha, ior(surface, refraction), view, SobolSequence(seed).point(sample), reflection,
+        sample_interface(interface.alpha, interface.ior, interface.view, SobolSequence(seed).point(sample), reflection,
                          sobol_beyond(sample, seed).x);
     const Vec3d way = frame.to_world(sampled.way);
     if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
@@ -110,15 +142,43 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     }
     const Vec3d origin = sampled.reflected ? surface.point.off_surface() : surface.point.behind_surface();
     const Ray next = {Vec3f(origin), 0, Vec3f(way)};
-    const PathKind by = sampled.reflected ? PathKind::glossy : PathKind::transmission;
-    const Rgb weight = surface.throughput * color(surface, refraction.weight);
     // No other light comes this way.
-    start(surface
-              .next(RaySource::mirror, by, !sampled.reflected,
-                    weight * static_cast<float>(sampled.weight / division.paths), next)
-              .from(scene_->materials()[surface.point.material])
-              .drawn(alpha > kSmooth, division.is_broad),
-          next);
+    start(path(sampled.reflected, weight * static_cast<float>(sampled.weight), next), next);
+}
+
+/// Each path draws one lamp where there are many.
+void CameraSurfaces::add_narrow_lamps(const Surface& surface, const Interface& interface, const ShadingFrame& frame,
+                                      const Segment& path, std::uint32_t seed, std::uint32_t number, const Sink& sink) {
+    const std::span<const Light> lamps = scene_->lights();
+    const bool draws = lamps.size() > kMostLamps;
+    const auto drawn = static_cast<std::size_t>(sobol_beyond(number, seed).x * static_cast<double>(lamps.size()));
+    const std::size_t first = draws ? std::min(drawn, lamps.size() - 1) : 0;
+    const auto share = static_cast<float>(draws ? lamps.size() : 1);
+    const bool behind = glm::dot(frame.z, interface.frame.z) < 0;
+    const SurfacePoint point = behind ? surface.point.turned() : surface.point;
+    const Vec3f origin(point.off_surface());
+    for (std::size_t i = first; i < (draws ? first + 1 : lamps.size()); ++i) {
+        const LightTraits& traits = traits_of(lamps[i]);
+        if (traits.is_surface || !traits.lights_glossy || !traits.links.lights(path.light_set.value_or(0)) ||
+            apparent_size(lamps[i], Vec3d(origin)) >= interface.least_lamp()) {
+            continue;
+        }
+        const auto lamp = drawer_.draw(lamps[i], frame, point.error,
+                                       SobolSequence(hash(seed, static_cast<std::uint32_t>(i))).point(number));
+        if (!lamp || glm::dot(lamp->way, point.geometric_normal) <= 0) {
+            continue;
+        }
+        const double value = interface_value(interface.alpha, interface.ior, interface.view,
+                                             interface.frame.to_local(lamp->way), interface.reflection);
+        Rgb light = path.throughput * lamp->light * static_cast<float>(value) * share;
+        if (light != Rgb(0) && traits.casts_shadows) {
+            const Ray ray = {origin, 0, Vec3f(lamp->way), static_cast<float>(lamp->distance), traits.links.shadow_rays};
+            Rgb visible(1);
+            scene_->rays().visibility({&ray, 1}, settings_.transparent_bounces, {&visible, 1});
+            light *= visible;
+        }
+        add_light(path, LightKind::emission, traits.group, light, sink);
+    }
 }
 
 void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -192,6 +252,9 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uin
 
 bool CameraSurfaces::add_cell(const Surface& end, const Sink& sink) {
     WorldCell key;
+    if (!end.filtered && settings_.stored->cells.is_filtered(end.point.material)) {
+        return false;
+    }
     if (!settings_.stored->cells.find(end.point, end.whole.direction, end.distance, key)) {
         return false;
     }
@@ -245,6 +308,3 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
 }
 
 }  // namespace shlight
-    if (!end.filtered && settings_.stored->cells.is_filtered(end.point.material)) {
-        return false;
-    }

@@ -27,7 +27,7 @@ SHEEN_STEPS = np.linspace(0.0, 1.0, 32)  # of roughness and of cosine
 
 @lru_cache(maxsize=1)
 def tables() -> dict[str, Table]:
-    """The tables "albedo", "mean_albedo", "rise" and "sheen"."""
+    """The tables of `energy.npz` have the names that they have there; "sheen" is another."""
     with np.load(KEPT) as kept, np.load(KEPT_SHEEN) as kept_sheen:
         return {
             **{name: Table(kept[name]) for name in kept.files},
@@ -47,9 +47,32 @@ def mean_albedo(roughness: Number) -> Value:
 
 def rise(roughness: Number, cosine: Number, ior: Number) -> Value:
     """How far Fresnel's curve has risen from its value head-on to 1, on average over the microfacets that are seen."""
+    return operation("table3", roughness, cosine, _parameter(ior), data=tables()["rise"])
+
+
+def _parameter(ior: Number) -> Value:
+    """The place of an index in tables over it."""
     index = number(ior)
-    parameter = sqrt(abs((index - 1.0) / (index + 1.0)))
-    return operation("table3", roughness, cosine, clamp(parameter), data=tables()["rise"])
+    return clamp(sqrt(abs((index - 1.0) / (index + 1.0))))
+
+
+def interface(roughness: Number, cosine: Number, ior: Number, inside: Number) -> Value:
+    """The share of light that a rough interface reflects or lets through at once. ior: at least 1; inside: 1 where the
+    viewer is on the side of the larger index, else 0."""
+    outer, inner = (
+        operation("table3", roughness, cosine, _parameter(ior), data=tables()[name])
+        for name in ("interface", "interface_inside")
+    )
+    return outer + (inner - outer) * inside
+
+
+def mean_interface(roughness: Number, ior: Number, inside: Number) -> Value:
+    """The same over all views, weighted by their cosine."""
+    outer, inner = (
+        operation("table2", roughness, _parameter(ior), data=tables()[name])
+        for name in ("mean_interface", "mean_interface_inside")
+    )
+    return outer + (inner - outer) * inside
 
 
 def sheen(roughness: Number, cosine: Number) -> Value:

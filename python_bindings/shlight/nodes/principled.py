@@ -147,7 +147,11 @@ def head_on(ior: Number) -> Value:
 
 def bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
     """The factor by which multiple scattering between microfacets brightens a lobe (Kulla & Conty 2017)."""
-    own, mean = energy.albedo(roughness, cosine), energy.mean_albedo(roughness)
+    return _brighter(energy.albedo(roughness, cosine), energy.mean_albedo(roughness), mean_fresnel)
+
+
+def _brighter(own: Value, mean: Value, mean_fresnel: Color) -> Color:
+    """own, mean: shares of light that are not lost, at the view and on average."""
     again = mean_fresnel * mean / (1.0 - mean_fresnel * (1.0 - mean))
     return color(1.0 + again * ((1.0 - own) / own))
 
@@ -348,18 +352,25 @@ def _interface(
     roughness: Value,
     at: Vector,
     *,
+    tint: Color,
     several_bounces: bool,
     distribution: Distribution = "ggx",
     thin: Film | None = None,
 ) -> tuple[Shader, Color]:
-    """The reflection of a transparent body's front, and by what a film changes the light that goes through."""
+    """The reflection of a transparent body's front, and a factor of the light that goes through."""
     front = color(weight * (1.0 - backfacing()))
     index = maximum(ior, 1.0 / ior)
-    several: dict[str, Any] = {"several_bounces": several_bounces, "distribution": distribution}
-    lobes, _ = _dielectric(front, f0, index, roughness, at, thin=thin, **several)
+    cosine = clamp(dot(towards_viewer(), at), 1e-4)
     passed = color(1.0)
     if thin is not None:
-        passed = mixed(film_passes(thin, clamp(dot(towards_viewer(), at), 1e-4)), 1.0, backfacing())
+        passed = mixed(film_passes(thin, cosine), 1.0, backfacing())
+    if several_bounces:
+        inside = select(ior < 1.0, 1.0 - backfacing(), backfacing())
+        kept = energy.interface(roughness, cosine, index, inside)
+        brighter = _brighter(kept, energy.mean_interface(roughness, index, inside), tint)
+        front, passed = color(front * brighter), color(passed * brighter)
+    kept_alone: dict[str, Any] = {"several_bounces": False, "distribution": distribution}
+    lobes, _ = _dielectric(front, f0, index, roughness, at, thin=thin, **kept_alone)
     return Shader(lobes), passed
 
 
@@ -388,7 +399,7 @@ def glass(
     if thin is not None:
         thin = thin._replace(below=index)
     several: dict[str, Any] = {"several_bounces": several_bounces, "distribution": kind}
-    front, passed = _interface(c, color(head_on(index)), index, r, n, thin=thin, **several)
+    front, passed = _interface(c, color(head_on(index)), index, r, n, tint=c, thin=thin, **several)
     return front + Shader(refractions=(Refraction(color(c * passed), r * r, index, at),))
 
 
@@ -510,8 +521,9 @@ def principled(
         f0 = clamped(tint * head_on(index))
         own = color(weight * through)
         on_glass = None if thin is None else thin._replace(below=index)
-        front, passed = _interface(own, f0, index, rough, glossy_normal, several_bounces=several, thin=on_glass)
         through_tint = Color(*(sqrt(clamp(component)) for component in base))
+        inner: dict[str, Any] = {"tint": through_tint, "several_bounces": several, "thin": on_glass}
+        front, passed = _interface(own, f0, index, rough, glossy_normal, **inner)
         result += front + Shader(
             refractions=(Refraction(color(own * through_tint * passed), rough * rough, index, at),)
         )
