@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 from numpy.typing import NDArray
 from scene_cases import FACES, SQUARE
 
@@ -110,6 +111,27 @@ def test_a_mirror_shows_the_room_once_light_bounces() -> None:
     assert lit.mean() < 0.1  # the lamp alone
     seen = shlight.render(scene, 64, 48, max_bounces=1)
     assert rel_mse(2 * seen[..., :3], expected[..., :3]) <= 1e-3
+
+
+def lit_by_a_ball(metal: shlight.Bsdf | nodes.Shader) -> NDArray[np.float32]:
+    """What bounces to a floor in the sun, from a ball on it."""
+    ball = trimesh.creation.icosphere(4, 0.6)
+    scene = shlight.Scene()
+    scene.add_mesh(4 * SQUARE, FACES, bsdf=gray(0.6))
+    scene.add_mesh(np.add(ball.vertices, (0, 0, 0.6)), ball.faces, bsdf=metal, normals=ball.vertex_normals)
+    scene.add_sun_light((0.3, 0.6, -1), 0.01, (3, 3, 3))
+    to_world = np.eye(4)
+    to_world[:3, 3] = (0, 0, 6)
+    scene.set_camera(to_world, 0.8)
+    seen = shlight.render(scene, 32, 32, passes=["diffuse_indirect"], max_bounces=2, filter_glossy=1.0)
+    return seen["diffuse_indirect"]
+
+
+@pytest.mark.parametrize("roughness", [0.0, 0.1])
+def test_a_filter_of_gloss_is_that_of_wide_lobes(roughness: float) -> None:
+    wide = lit_by_a_ball(shlight.Bsdf.ggx(2 / 3, (0.9, 0.7, 0.4)))  # the width of a filter of 1
+    for metal in (shlight.Bsdf.ggx(roughness, (0.9, 0.7, 0.4)), nodes.ggx(roughness, (0.9, 0.7, 0.4))):
+        assert rel_mse(lit_by_a_ball(metal), wide) <= 1e-3
 
 
 @pytest.mark.parametrize("size", [16, 48])
