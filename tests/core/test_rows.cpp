@@ -3,6 +3,8 @@
 // Rows of coefficients come out the same whichever way they reach memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -93,6 +95,26 @@ TYPED_TEST(Rows, AreTheSameCachedAndStreamed) {
                 });
             }
         }
+    }
+}
+
+TYPED_TEST(Rows, AreThoseOfLightsAlone) {
+    using T = TypeParam;
+    constexpr std::size_t kMany = 5000;  // more than the core works on at once
+    constexpr int kOrder = 3;
+    constexpr std::size_t kRow = coefficient_count(kOrder);
+    RandomInput random(2);
+    std::vector<Vec3<T>> centers;
+    for (std::size_t i = 0; i < kMany; ++i) {
+        centers.emplace_back(random.direction());
+    }
+    const std::vector<T> radii(kMany, T{0.5});
+    std::vector<T> all(kMany * kRow);
+    sphere_coefficients<T>(centers, radii, kOrder, true, all);
+    for (std::size_t i = 0; i < kMany; i += 7) {
+        std::array<T, kRow> alone;
+        sphere_coefficients<T>(std::span(centers).subspan(i, 1), std::span(radii).first(1), kOrder, true, alone);
+        ASSERT_TRUE(std::ranges::equal(alone, std::span(all).subspan(i * kRow, kRow))) << i;
     }
 }
 
