@@ -14,6 +14,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+import pytest
 from luminaires import KINDS, luminaire
 
 SIDE = 4  # faces along a patch
@@ -459,3 +460,22 @@ def test_shape_of_a_mesh(studio: Any) -> None:
         assert np.median(np.abs(ours - theirs)) <= 1e-5
         assert near.mean() >= 0.97, output  # silhouettes
         assert np.ptp(theirs[theirs > 1.0]) >= 0.05, output
+
+
+@pytest.mark.parametrize(("projection", "blend"), [("BOX", 0.0), ("BOX", 0.4), ("SPHERE", 0.0), ("TUBE", 0.0)])
+def test_pictures_are_projected(studio: Any, projection: str, blend: float) -> None:
+    """Onto a body with sides that look everywhere."""
+    pixels = np.random.default_rng(5).uniform(0.0, 1.0, (4, 4, 3))
+
+    def prepare(node: Any) -> None:
+        node.image = studio.picture(pixels, is_float=True)
+
+    properties = {"projection": projection, "projection_blend": blend}
+    body = studio.ball(rings=6, smooth=False)
+    body.data.materials.append(material(Case("ShaderNodeTexImage", {}, 0, properties, prepare)))
+    studio.camera(location=(3, -4, 3))
+    studio.scene.cycles.pixel_filter_type, studio.scene.cycles.filter_width = "GAUSSIAN", 0.01
+    studio.scene.shlight.pixel_samples = 1
+    ours, theirs = picture(studio, "SHLIGHT"), picture(studio, "CYCLES")
+    assert (np.abs(ours - theirs).max(axis=2) <= 1e-2).mean() >= 0.97  # all but edges
+    assert np.ptp(theirs[theirs > 1.0]) >= 0.5

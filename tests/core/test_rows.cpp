@@ -3,6 +3,8 @@
 // Rows of coefficients come out the same whichever way they reach memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -14,6 +16,7 @@
 #include "random_input.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
+#include "shlight/sphere_gradient.h"
 #include "simd/targets.h"
 
 namespace shlight {
@@ -93,6 +96,41 @@ TYPED_TEST(Rows, AreTheSameCachedAndStreamed) {
                 });
             }
         }
+    }
+}
+
+TYPED_TEST(Rows, AreThoseOfLightsAlone) {
+    using T = TypeParam;
+    constexpr std::size_t kMany = 5000;  // more than the core works on at once
+    constexpr int kOrder = 3;
+    constexpr std::size_t kRow = coefficient_count(kOrder);
+    RandomInput random(2);
+    std::vector<Vec3<T>> centers;
+    for (std::size_t i = 0; i < kMany; ++i) {
+        centers.emplace_back(random.direction());
+    }
+    const std::vector<T> radii(kMany, T{0.5});
+    std::vector<T> all(kMany * kRow);
+    sphere_coefficients<T>(centers, radii, kOrder, true, all);
+    std::vector<T> same(all.size());
+    std::vector<T> by_center(3 * all.size());
+    std::vector<T> by_radius(all.size());
+    sphere_coefficients_gradient<T>(centers, radii, kOrder, true, same, by_center, by_radius);
+    EXPECT_EQ(all, same);
+    const auto expect_row = [&](std::span<const T> alone, std::span<const T> rows, std::size_t light) {
+        EXPECT_TRUE(std::ranges::equal(alone, rows.subspan(light * alone.size(), alone.size()))) << light;
+    };
+    for (std::size_t i = 0; i < kMany; i += 77) {
+        const auto center = std::span(centers).subspan(i, 1);
+        const auto radius = std::span(radii).first(1);
+        std::array<T, kRow> alone;
+        std::array<T, 3 * kRow> own_by_center;
+        std::array<T, kRow> own_by_radius;
+        sphere_coefficients<T>(center, radius, kOrder, true, alone);
+        expect_row(alone, all, i);
+        sphere_coefficients_gradient<T>(center, radius, kOrder, true, alone, own_by_center, own_by_radius);
+        expect_row(own_by_center, by_center, i);
+        expect_row(own_by_radius, by_radius, i);
     }
 }
 

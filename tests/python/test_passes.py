@@ -74,6 +74,13 @@ def test_places_of_a_floor_are_those_of_rays_through_the_middles() -> None:
         np.testing.assert_allclose(passes[name], values, rtol=1e-5, atol=1e-5, err_msg=name)
 
 
+def test_places_go_on_across_a_wide_picture() -> None:
+    """Wider than what the core takes at once."""
+    passes = shlight.render(lit_floor(), 2500, 2, pixel_samples=1, passes=["position"], max_bounces=0)
+    steps = np.diff(passes["position"][..., 0], axis=1)
+    np.testing.assert_allclose(steps, steps[0, 0], rtol=1e-2)
+
+
 def all_kinds_of_light(far: bool) -> shlight.Scene:
     """Varying, mixed and transparent materials, and every way in which light reaches them.
 

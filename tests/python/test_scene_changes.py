@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -35,7 +38,7 @@ def add_lamp(scene: shlight.Scene, x: float) -> None:
     scene.add_sphere_light([x, 0.25, 1.5], 0.3, [4, 2, 1])
 
 
-def picture(scene: shlight.Scene) -> NDArray[np.float32]:
+def picture(scene: shlight.Scene) -> shlight.RenderResult:
     return shlight.render(scene, 24, 24, max_samples=4, max_bounces=0)
 
 
@@ -151,3 +154,41 @@ def test_a_refused_change_leaves_the_mesh_as_it_was(change: Change, name: str) -
     with pytest.raises(ValueError, match=f"^{name}"):
         change(wall)
     np.testing.assert_array_equal(picture(scene), before)
+
+
+@contextmanager
+def once_released(work: Callable[[], object]) -> Iterator[None]:
+    """Another thread does this as soon as a call in here lets go of Python's lock, as imports would too."""
+    start = threading.Semaphore(0)
+    thread = threading.Thread(target=lambda: (start.acquire(), work()))
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(1000)  # Python itself lets go of it after so many seconds
+    try:
+        thread.start()
+        start.release()
+        yield
+    finally:
+        sys.setswitchinterval(usual)
+        thread.join()
+
+
+def test_a_render_shows_the_scene_that_it_began_with() -> None:
+    """Also if the scene changes before it is built, while all its vertices are looked at."""
+    scene, _ = scene_of()
+    add_lamp(scene, 0.5)
+    scene.add_mesh(np.concatenate([WALL, np.zeros((2_000_000, 3), np.float32)]), FACES)
+    before = picture(copy.copy(scene))
+    with once_released(scene.remove_lights):
+        own = picture(scene)
+    np.testing.assert_array_equal(own, before)
+    assert not picture(scene)[..., :3].any()
+
+
+def test_other_threads_run_while_a_scene_is_built() -> None:
+    scene, _ = scene_of()
+    picture(scene)  # has all imported that a render needs
+    scene.add_mesh(*plane(300))
+    ran = threading.Event()
+    with once_released(ran.set), pytest.raises(shlight.RenderCancelled):
+        shlight.render(scene, 8, 8, max_bounces=0, progress=lambda _: not ran.is_set())
+    assert picture(scene).report.build_seconds > 0
