@@ -114,7 +114,7 @@ def test_a_mirror_shows_the_room_once_light_bounces() -> None:
 
 
 def lit_by_a_ball(metal: shlight.Bsdf | nodes.Shader) -> NDArray[np.float32]:
-    """What bounces to a floor in the sun, from a ball on it."""
+    """Returns the light that bounces to a floor in the sun from a ball on it."""
     ball = trimesh.creation.icosphere(4, 0.6)
     scene = shlight.Scene()
     scene.add_mesh(4 * SQUARE, FACES, bsdf=gray(0.6))
