@@ -320,7 +320,7 @@ class CameraSurfaces {
     double ior(const Surface& surface, const ShadedRefraction& refraction) const;
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
                  const Division& division, const Sink& sink);
-    /// A rough interface, as one path meets it.
+    /// An interface, as one path meets it.
     struct Interface {
         double alpha, ior;
         InterfaceReflection reflection;
