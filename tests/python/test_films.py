@@ -68,6 +68,21 @@ def test_the_factor_is_a_sum_of_waves(case: tuple[float, float, complex], model:
     np.testing.assert_allclose(found, seen(VIEWS, thickness, index, below, model), rtol=4e-3, atol=1e-3)
 
 
+def test_a_film_of_air_leaves_the_curve_of_a_metal() -> None:
+    """The curve is Schlick's but for a dip, by which the metal has its edge's reflectance at a cosine of 1/7."""
+    own, n, k, edge = films.film(400.0, 1.0), 0.2, 3.0, 0.6
+    assert own is not None
+    builder = ProgramBuilder()
+    factors = films.film_factors(own, Value(Step("input", (), ("position", 0, 0))), 0.0, n, k, edge)
+    builder.result(list(factors[0]))
+    places = np.stack([VIEWS, VIEWS, VIEWS]).astype(np.float32)
+    found = builder.program().evaluate([((0, 0, 0), places)], len(VIEWS)).T
+    head_on = ((n - 1) ** 2 + k**2) / ((n + 1) ** 2 + k**2)
+    schlick, at_edge = (head_on + (1 - head_on) * (1 - c) ** 5 for c in (VIEWS, 1 / 7))
+    dip = (at_edge - edge) * VIEWS * (1 - VIEWS) ** 6 / (1 / 7 * (6 / 7) ** 6)
+    np.testing.assert_allclose(found, (schlick - dip)[:, None] * np.ones(3), atol=2e-3)
+
+
 @pytest.mark.parametrize(("roughness", "case"), list(itertools.product((0.3, 0.6, 1.0), CASES)))
 def test_lobes_reflect_it(roughness: float, case: tuple[float, float, complex]) -> None:
     """An even world is reflected by the factor's mean over the lobe, and a sun by nearly the factor where it stands."""
