@@ -163,6 +163,21 @@ def test_a_glass_body_in_white_light_is_not_seen(roughness: float, film: float, 
     assert roughness > 0 or image.max() <= 1.001
 
 
+def test_a_lamp_in_a_wall_is_seen_through_frosted_glass() -> None:
+    """It is as bright as a little before the wall, though shadow rays end where the wall is."""
+    brightness = []
+    for height in (0, 1e-3):
+        scene = shlight.Scene()
+        scene.add_mesh(4 * SQUARE @ [[1, 0, 0], [0, 0, 1], [0, -1, 0]] + [0, 3.3, 0], FACES, bsdf=gray(0))
+        corners = 0.05 * SQUARE @ [[1, 0, 0], [0, 0, 1], [0, -1, 0]] + [0, 3.3 - height, 0]
+        scene.add_polygon_light(corners, (300, 300, 300))
+        scene.add_mesh(box((-1, 1, -1), (1, 1.1, 1)), BOX_FACES, bsdf=nodes.glass((1, 1, 1), 0.5, 1.45))
+        scene.set_camera(looking((0, 0, 0), (0, 1, 0)), 0.6)
+        brightness.append(shlight.render(scene, 24, 24, max_samples=64, max_bounces=4)[..., :3].mean())
+    assert brightness[1] > 0.05
+    np.testing.assert_allclose(brightness[0], brightness[1], rtol=0.02)
+
+
 @pytest.mark.parametrize("narrow", [False, True])
 @pytest.mark.parametrize(("most", "glossy"), [(4, 0), (4, 2), (1, 3), (3, None)])
 def test_a_closed_room_of_mirrors_adds_up_its_glossy_bounces(most: int, glossy: int | None, narrow: bool) -> None:

@@ -12,9 +12,9 @@
 
 #include "base/checks.h"
 #include "delta_view.h"
-#include "lighting/shadow_ray_spawner.h"
 #include "lights/cap_sampling.h"
 #include "lights/local_light.h"
+#include "lights/shadow_ray_spawner.h"
 #include "random_directions.h"
 #include "random_numbers.h"
 #include "shlight/render.h"

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "base/scratch.h"
-#include "lighting/shadow_ray_spawner.h"
 #include "lighting/sky_guide.h"
 #include "lights/face_sampling.h"
 #include "lights/light_sampling.h"
 #include "lights/local_light.h"
+#include "lights/shadow_ray_spawner.h"
 #include "lights/whole_rectangle.h"
 #include "lobes/lobe_rays.h"
 #include "shlight/environment.h"

@@ -35,7 +35,7 @@ double size_of(const ParallelSource& /*lamp*/, const Vec3d& /*from*/) {
     return 0;
 }
 
-/// The way to a lamp without extent, of any length, and what it sends along it.
+/// The direction to a lamp without extent, in the world, and what it sends along it.
 LampDraw drawn(const PointSource& lamp, const Vec3d& from) {
     const Vec3d way = lamp.position - from;
     const double distance = glm::length(way);
@@ -49,8 +49,9 @@ LampDraw drawn(const ParallelSource& lamp, const Vec3d& /*from*/) {
 template <class Lamp>
 std::optional<LampDraw> drawn_without_extent(const Lamp& lamp, const ShadingFrame& frame, double error) {
     LampDraw draw = drawn(lamp, frame.origin);
-    draw.light *= static_cast<float>(profile_factor(lamp.traits.profile, -draw.way));
-    return draw.distance > 2 * error && glm::dot(draw.way, frame.z) > 0 ? std::optional(draw) : std::nullopt;
+    draw.light *= static_cast<float>(profile_factor(lamp.traits.profile, -draw.direction));
+    draw.direction = frame.to_local(draw.direction);
+    return draw.distance > 2 * error && draw.direction.z > 0 ? std::optional(draw) : std::nullopt;
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ std::optional<LampDraw> LampDrawer::draw(const Light& lamp, const ShadingFrame& 
     sampler_.reset(local_);
     const LightSample sample = sampler_.sample(point);
     const double factor = sample.weight * local_.profile().factor(sample.direction);
-    return LampDraw{frame.to_world(sample.direction), sample.distance, static_cast<float>(factor) * strength_of(lamp)};
+    return LampDraw{sample.direction, sample.distance, static_cast<float>(factor) * strength_of(lamp)};
 }
 
 }  // namespace shlight

@@ -21,7 +21,7 @@ double apparent_size(const Light& lamp, const Vec3d& from);
 
 /// A drawn direction to a lamp.
 struct LampDraw {
-    Vec3d way;        ///< unit, in the world
+    Vec3d direction;  ///< unit, in the shading frame
     double distance;  ///< to the lamp's surface [m]; infinite for suns
     Rgb light;        ///< radiance ÷ density; of a lamp without extent its irradiance on a surface across the way
 };

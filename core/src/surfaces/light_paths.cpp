@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lights/shadow_ray_spawner.h"
 #include "lobes/refraction.h"
 #include "shlight/sampling.h"
 #include "surfaces/camera_surfaces.h"
@@ -156,23 +157,25 @@ void CameraSurfaces::add_narrow_lamps(const Surface& surface, const Interface& i
     const auto share = static_cast<float>(draws ? lamps.size() : 1);
     const bool behind = glm::dot(frame.z, interface.frame.z) < 0;
     const SurfacePoint point = behind ? surface.point.turned() : surface.point;
-    const Vec3f origin(point.off_surface());
+    const Vec3d origin = point.off_surface();
     for (std::size_t i = first; i < (draws ? first + 1 : lamps.size()); ++i) {
         const LightTraits& traits = traits_of(lamps[i]);
         if (traits.is_surface || !traits.lights_glossy || !traits.links.lights(path.light_set.value_or(0)) ||
-            apparent_size(lamps[i], Vec3d(origin)) >= interface.least_lamp()) {
+            apparent_size(lamps[i], origin) >= interface.least_lamp()) {
             continue;
         }
         const auto lamp = drawer_.draw(lamps[i], frame, point.error,
                                        SobolSequence(hash(seed, static_cast<std::uint32_t>(i))).point(number));
-        if (!lamp || glm::dot(lamp->way, point.geometric_normal) <= 0) {
+        const Vec3d way = lamp ? frame.to_world(lamp->direction) : Vec3d(0);
+        if (glm::dot(way, point.geometric_normal) <= 0) {
             continue;
         }
         const double value = interface_value(interface.alpha, interface.ior, interface.view,
-                                             interface.frame.to_local(lamp->way), interface.reflection);
+                                             interface.frame.to_local(way), interface.reflection);
         Rgb light = path.throughput * lamp->light * static_cast<float>(value) * share;
         if (light != Rgb(0) && traits.casts_shadows) {
-            const Ray ray = {origin, 0, Vec3f(lamp->way), static_cast<float>(lamp->distance), traits.links.shadow_rays};
+            const ShadowRaySpawner spawner(frame, origin, target_offset(lamps[i], frame), traits.links.shadow_rays);
+            const Ray ray = spawner.towards(lamp->direction, lamp->distance);
             Rgb visible(1);
             scene_->rays().visibility({&ray, 1}, settings_.transparent_bounces, {&visible, 1});
             light *= visible;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lighting/shadow_ray_spawner.h"
+#include "lights/shadow_ray_spawner.h"
 
 #include <variant>
 
