@@ -73,9 +73,7 @@ struct LitLayers {
         }
         lighting.emplace(lights, extended, environment ? *all.lighting.environment : black, 0, all.lighting.materials,
                          all.settings.order, all.settings.tolerance);
-        lighting->light_error = all.lighting.light_error;
-        lighting->face_tolerance = all.lighting.face_tolerance;
-        lighting->sky_guide = all.lighting.sky_guide;
+        lighting->follow(all.lighting);
     }
 
     std::vector<LightLayer*> layers;  // those with extent and the environment first

@@ -80,9 +80,7 @@ void look_ahead(Picture& picture, const Stopped& stopped) {
     picture.lighting.light_error = light_error(picture, pilot.reflected);
     picture.guide(pilot);
     if (picture.filtered) {
-        picture.filtered->face_tolerance = picture.lighting.face_tolerance;
-        picture.filtered->light_error = picture.lighting.light_error;
-        picture.filtered->sky_guide = picture.lighting.sky_guide;
+        picture.filtered->follow(picture.lighting);
     }
 }
 

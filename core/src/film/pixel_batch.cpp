@@ -100,16 +100,6 @@ NeighbourRays beside(const Ray& ray, const Ray& right, const Ray& below, double 
     return {right, below, mean([](const Ray& own) { return Vec3d(own.origin); }), mean(way)};
 }
 
-/// Whether a lobe is narrower, and its width is known.
-bool narrows(std::span<const MaterialLobes> materials, double width) {
-    return std::ranges::any_of(materials, [&](const MaterialLobes& material) {
-        return std::ranges::any_of(material.lobes(), [&](const Lobe& lobe) {
-            const LobeForm own = lobe_form(lobe.shape);
-            return lobe.varying_width == 0 && own.width < widened(lobe.shape, own, width).width;
-        });
-    });
-}
-
 }  // namespace
 
 Vec3d PixelSums::variance() const {
@@ -153,7 +143,10 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });
     parts = parts_of(*this);
-    if (settings.max_bounces > 0 && narrows(lighting.materials, filtered_width())) {
+    const bool narrows = std::ranges::any_of(lighting.materials, [&](const MaterialLobes& material) {
+        return has_narrower(material.lobes(), filtered_width());
+    });
+    if (settings.max_bounces > 0 && narrows) {
         filtered.emplace(s, lobes_of_materials(s.materials(), r.order, r.tolerance, stopped, filtered_width()), r.order,
                          r.tolerance);
     }

@@ -20,7 +20,7 @@ constexpr std::size_t kValues = std::size_t{1} << 21;
 constexpr std::size_t kMostHits = 4096;
 constexpr std::size_t kLeastHits = 64;
 
-/// A lobe whose width varies has none yet.
+/// A lobe whose width varies has none to widen.
 void widen(Lobe& lobe, double least_width) {
     const LobeForm own = lobe_form(lobe.shape);
     const LobeForm wide = widened(lobe.shape, own, least_width);
@@ -67,6 +67,12 @@ LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_co
     if (!sky.is_black()) {
         environment_shading.emplace(sky, materials, lobe_stride, order, tolerance);
     }
+}
+
+void LightingScene::follow(const LightingScene& other) {
+    light_error = other.light_error;
+    face_tolerance = other.face_tolerance;
+    sky_guide = other.sky_guide;
 }
 
 std::uint32_t LightingScene::batch_size() const {

@@ -51,6 +51,8 @@ struct LightingScene {
     LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
                   std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order, double error_tolerance);
 
+    /// Shades as exactly as another one.
+    void follow(const LightingScene& other);
     /// Hits that should be shaded together. Under many lights fewer: what each light adds is kept until all are known.
     std::uint32_t batch_size() const;
 

@@ -31,14 +31,22 @@ bool lets_through(const SurfaceShader* shader) {
     return shader != nullptr && (shader->transparency || !shader->refractions.empty());
 }
 
-/// least_width: that lobes are widened to.
-bool has_narrower(std::span<const Lobe> lobes, double width, double least_width) {
+/// Whether lobes that are at least so wide show a sharper picture than a cell has.
+bool shows_sharply(std::span<const Lobe> lobes, double least_width) {
     return std::any_of(lobes.begin(), lobes.end(), [&](const Lobe& lobe) {
-        return is_glossy(lobe.shape) && double{widened(lobe.shape, lobe_form(lobe.shape), least_width).width} < width;
+        const float width = widened(lobe.shape, lobe_form(lobe.shape), least_width).width;
+        return is_glossy(lobe.shape) && double{width} < LightCells::kLeastWidth;
     });
 }
 
 }  // namespace
+
+bool has_narrower(std::span<const Lobe> lobes, double width) {
+    return std::any_of(lobes.begin(), lobes.end(), [&](const Lobe& lobe) {
+        const LobeForm own = lobe_form(lobe.shape);
+        return lobe.varying_width == 0 && own.width < widened(lobe.shape, own, width).width;
+    });
+}
 
 LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, double filtered_width,
                        std::size_t parts)
@@ -47,10 +55,9 @@ LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes
         const std::span<const Lobe> lobes = materials[i].lobes();
         const bool is_diffuse =
             std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_glossy(lobe.shape); });
-        const bool is_sharp =
-            lets_through(scene.materials()[i].shader.get()) || has_narrower(lobes, kLeastWidth, filtered_width);
+        const bool is_sharp = lets_through(scene.materials()[i].shader.get()) || shows_sharply(lobes, filtered_width);
         looks_.push_back(is_sharp ? Look::sharp : is_diffuse ? Look::everywhere_alike : Look::by_view);
-        is_filtered_.push_back(has_narrower(lobes, filtered_width, 0) ? 1 : 0);
+        is_filtered_.push_back(has_narrower(lobes, filtered_width) ? 1 : 0);
     }
 }
 

@@ -20,6 +20,9 @@
 
 namespace shlight {
 
+/// Whether lobes of microfacets of a known width are narrower.
+bool has_narrower(std::span<const Lobe> lobes, double width);
+
 class LightCells {
   public:
     /// Lobes this wide, or wider, need no sharper picture of what they reflect.
