@@ -53,8 +53,8 @@ def _seen_share(alpha: float, cosine: float, other: Array) -> Array:
     return np.where(seen, own / (own + smith(np.where(seen, other, 1.0))), 0.0)
 
 
-def _reflected(roughness: float, cosine: float) -> tuple[Array, Array, Array]:
-    """For each visible normal: its cosine to the view, whether the light goes up, and G2 / G1."""
+def _reflected(roughness: float, cosine: float) -> tuple[Array, Array, Array, Array]:
+    """For each visible normal: its cosine to the view, its z, whether the light goes up, and G2 / G1."""
     alpha = roughness * roughness
     view = np.array([np.sqrt(1.0 - cosine * cosine), 0.0, cosine])
     normals = _visible_normals(view, alpha)
@@ -62,7 +62,7 @@ def _reflected(roughness: float, cosine: float) -> tuple[Array, Array, Array]:
     height = 2.0 * along * normals[:, 2] - cosine
     up = height > 0.0
 
-    return along, up, _seen_share(alpha, cosine, np.where(up, height, 0.0))
+    return along, normals[:, 2], up, _seen_share(alpha, cosine, np.where(up, height, 0.0))
 
 
 def _steps(count: int) -> Array:
@@ -78,21 +78,31 @@ def _dielectric(cosine: Array, ior: Array) -> Array:
 
 def _kept(roughness: float, cosine: float, ior: float) -> float:
     """The share of light that an interface reflects or lets through at once. ior: of the other side."""
-    along, _, reflected = _reflected(roughness, cosine)
-    alpha = roughness * roughness
-    height = _visible_normals(np.array([np.sqrt(1.0 - cosine * cosine), 0.0, cosine]), alpha)[:, 2]
+    along, height, _, reflected = _reflected(roughness, cosine)
     square = 1.0 - (1.0 - along * along) / (ior * ior)  # of the cosine at which light goes on
     passes = square > 0.0
     fresnel = np.where(passes, _dielectric(along, np.asarray(np.where(passes, ior, 2.0))), 1.0)
     depth = cosine / ior - (along / ior - np.sqrt(np.maximum(square, 0.0))) * height
-    passed = _seen_share(alpha, cosine, np.where(passes, np.maximum(depth, 0.0), 0.0))
+    passed = _seen_share(roughness * roughness, cosine, np.where(passes, np.maximum(depth, 0.0), 0.0))
     return float((fresnel * reflected + (1.0 - fresnel) * passed).mean())
 
 
-def _indices(inside: bool) -> Array:
-    root = np.clip(np.arange(16) / 15, LEAST, LARGEST_PARAMETER) ** 2
+def _roots() -> Array:
+    """Roots of the reflectance head-on, by the parameter of the index."""
+    return np.asarray(np.clip(np.arange(16) / 15, LEAST, LARGEST_PARAMETER) ** 2, np.float64)
+
+
+def _indices(inside: bool = False) -> Array:
+    root = _roots()
     outer = (1.0 + root) / (1.0 - root)
     return np.asarray(1.0 / outer if inside else outer)
+
+
+def _over_views(at: Callable[[float], float], count: int) -> float:
+    """The mean over views, weighted by their cosine."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    cosines, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    return sum(2.0 * w * c * at(c) for c, w in zip(cosines, weights, strict=True))
 
 
 def interface_table(inside: bool) -> Array:
@@ -102,28 +112,25 @@ def interface_table(inside: bool) -> Array:
 
 def mean_interface_table(inside: bool) -> Array:
     """The same over all views, weighted by their cosine."""
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-    views = list(zip(0.5 * (nodes + 1.0), 0.5 * weights, strict=True))
-    return np.array(
-        [[sum(2.0 * w * c * _kept(r, c, n) for c, w in views) for r in _steps(16)] for n in _indices(inside)]
-    )
+
+    def mean(roughness: float, ior: float) -> float:
+        return _over_views(lambda cosine: _kept(roughness, cosine, ior), 12)
+
+    return np.array([[mean(r, n) for r in _steps(16)] for n in _indices(inside)])
 
 
 def albedo_table() -> Array:
     """Albedo of a lobe without Fresnel's factor, over cosine (rows) and roughness."""
-    return np.array([[_reflected(r, c)[2].mean() for r in _steps(32)] for c in _steps(32)])
+    return np.array([[_reflected(r, c)[3].mean() for r in _steps(32)] for c in _steps(32)])
 
 
 def mean_albedo_table() -> Array:
     """The same over all views, weighted by their cosine."""
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    cosines, weights = 0.5 * (nodes + 1.0), 0.5 * weights
-    return np.array(
-        [
-            sum(2.0 * w * c * _reflected(r, c)[2].mean() for c, w in zip(cosines, weights, strict=True))
-            for r in _steps(32)
-        ]
-    )
+
+    def mean(roughness: float) -> float:
+        return _over_views(lambda cosine: float(_reflected(roughness, cosine)[3].mean()), 24)
+
+    return np.array([mean(r) for r in _steps(32)])
 
 
 def rise_table() -> Array:
@@ -131,13 +138,11 @@ def rise_table() -> Array:
 
     Over the parameter of the index (outermost), cosine and roughness.
     """
-    parameters = np.clip(np.arange(16) / 15, LEAST, LARGEST_PARAMETER)
-    root = parameters**2  # of the reflectance head-on
-    ior = (1.0 + root) / (1.0 - root)
+    root, ior = _roots(), _indices()
     values = np.empty((16, 16, 16))
     for row, cosine in enumerate(_steps(16)):
         for column, roughness in enumerate(_steps(16)):
-            along, up, _ = _reflected(roughness, cosine)
+            along, _, up, _ = _reflected(roughness, cosine)
             head_on = (root**2)[:, None]
             rise = (_dielectric(along[None], ior[:, None]) - head_on) / (1.0 - head_on)
             values[:, row, column] = (np.clip(rise, 0.0, 1.0) * up).mean(axis=1)

@@ -59,19 +59,16 @@ def _parameter(ior: Number) -> Value:
 def interface(roughness: Number, cosine: Number, ior: Number, inside: Number) -> Value:
     """The share of light that a rough interface reflects or lets through at once. ior: at least 1; inside: 1 where the
     viewer is on the side of the larger index, else 0."""
-    outer, inner = (
-        operation("table3", roughness, cosine, _parameter(ior), data=tables()[name])
-        for name in ("interface", "interface_inside")
-    )
-    return outer + (inner - outer) * inside
+    return _of_side("interface", inside, "table3", roughness, cosine, _parameter(ior))
 
 
 def mean_interface(roughness: Number, ior: Number, inside: Number) -> Value:
     """The same over all views, weighted by their cosine."""
-    outer, inner = (
-        operation("table2", roughness, _parameter(ior), data=tables()[name])
-        for name in ("mean_interface", "mean_interface_inside")
-    )
+    return _of_side("mean_interface", inside, "table2", roughness, _parameter(ior))
+
+
+def _of_side(name: str, inside: Number, look_up: str, *place: Number) -> Value:
+    outer, inner = (operation(look_up, *place, data=tables()[own]) for own in (name, f"{name}_inside"))
     return outer + (inner - outer) * inside
 
 

@@ -369,8 +369,7 @@ def _interface(
         kept = energy.interface(roughness, cosine, index, inside)
         brighter = _brighter(kept, energy.mean_interface(roughness, index, inside), tint)
         front, passed = color(front * brighter), color(passed * brighter)
-    kept_alone: dict[str, Any] = {"several_bounces": False, "distribution": distribution}
-    lobes, _ = _dielectric(front, f0, index, roughness, at, thin=thin, **kept_alone)
+    lobes, _ = _dielectric(front, f0, index, roughness, at, several_bounces=False, distribution=distribution, thin=thin)
     return Shader(lobes), passed
 
 
