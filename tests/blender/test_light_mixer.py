@@ -86,6 +86,20 @@ def test_apply_writes_what_is_seen_and_reset_takes_it_back(lit: Any) -> None:
     assert row("Key").power == 1.0
 
 
+def test_an_undo_keeps_the_mix_unless_it_may_take_back_what_apply_wrote(lit: Any) -> None:
+    def undo() -> None:
+        for handler in bpy.app.handlers.undo_post:
+            handler(lit.scene, None)
+
+    row("Key").power = 0.5
+    before = lit.render("SHLIGHT")
+    undo()
+    np.testing.assert_allclose(mixed(), before, atol=1e-6)
+    assert bpy.ops.shlight.apply_light_mix() == {"FINISHED"}
+    undo()
+    assert "can be mixed" in mix_problem(bpy.context)
+
+
 def test_nothing_is_applied_to_lamps_that_cannot_have_it(lit: Any) -> None:
     bpy.data.objects["Fill"].data.keyframe_insert("energy", frame=1)
     row("Key").power = row("Fill").power = 2.0

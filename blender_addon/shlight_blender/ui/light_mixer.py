@@ -189,18 +189,30 @@ def _follow(scene: Any, depsgraph: Any) -> None:
 
 
 @persistent
+def _undone(*_: Any) -> None:
+    """Shows the mix of the sliders' earlier values, unless lamps may have lost what Apply has written to them."""
+    mix = record.last.mix
+    if mix is not None and not mix.is_rendered:
+        record.last.mix = None
+    show_mix(bpy.context)
+
+
+@persistent
 def _forget(*_: Any) -> None:
     _remove_image()
 
 
+_HANDLERS = {"depsgraph_update_post": _follow, "undo_post": _undone, "redo_post": _undone, "load_pre": _forget}
+
+
 def register() -> None:
-    bpy.app.handlers.depsgraph_update_post.append(_follow)
-    bpy.app.handlers.load_pre.append(_forget)
+    for name, handler in _HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister() -> None:
-    bpy.app.handlers.depsgraph_update_post.remove(_follow)
-    bpy.app.handlers.load_pre.remove(_forget)
+    for name, handler in _HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
     _remove_image()
 
 
