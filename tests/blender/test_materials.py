@@ -215,6 +215,7 @@ def test_nothing_is_bevelled_or_occluded(studio: Any) -> None:
             "its thin film is not seen from inside of the body",
         ),
         ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
+        ("ShaderNodeBsdfPrincipled", {"IOR": 0.8}, "an 'IOR' below 1 reflects as its reciprocal does"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),
     ],
 )

@@ -87,6 +87,9 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_glass("'Transmission Weight'")
         _remark_film_inside(inputs, thin)
+    index = inputs.number("IOR").constant
+    if index is not None and index < 1.0:
+        inputs.remark("an 'IOR' below 1 reflects as its reciprocal does")
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
