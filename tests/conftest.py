@@ -2,9 +2,11 @@
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
@@ -19,3 +21,9 @@ def _interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def resident() -> Callable[[], int]:
+    """How many bytes of this process are in memory."""
+    return lambda: int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()

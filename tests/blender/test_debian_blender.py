@@ -193,7 +193,7 @@ WRITE_REFUSED = "Writing to ID classes in this context is not allowed"
 READ_ONLY = re.compile(r"(?:Error: )?Traceback.*\n(?:  .*\n)*RuntimeError: .* can't run in readonly state.*")
 
 
-@pytest.mark.parametrize("steps", [25, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("steps", [12, pytest.param(1000, marks=pytest.mark.slow)])
 def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
     """Random steps during renders: other files, undo, the add-on and Cycles disabled, scripts reloaded."""
     addons = tmp_path / ".config/blender/3.4/scripts/addons"

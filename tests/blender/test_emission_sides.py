@@ -55,7 +55,7 @@ SHAPES = {
 @pytest.mark.parametrize(
     ("shape", "output", "front", "back", "textured", "width"),
     [
-        ("square", "Backfacing", 5, 0, False, 1),
+        pytest.param("square", "Backfacing", 5, 0, False, 1, marks=pytest.mark.slow),
         ("square", "True Normal", 0, 5, False, -1),
         ("box", "Backfacing", 5, 2, True, 1),
         pytest.param("ball", "Backfacing", 5, 0, False, 1, marks=pytest.mark.slow),

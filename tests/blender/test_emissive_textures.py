@@ -158,11 +158,11 @@ def looked_up(studio: Any, made: Any) -> tuple[Array, Array]:
     ("extension", "interpolation", "vector_type", "is_float"),
     [
         ("REPEAT", "Linear", "", False),
-        ("EXTEND", "Linear", "POINT", True),
+        pytest.param("EXTEND", "Linear", "POINT", True, marks=pytest.mark.slow),
         pytest.param("CLIP", "Linear", "TEXTURE", False, marks=pytest.mark.slow),
         ("CLIP", "Closest", "VECTOR", True),
         pytest.param("MIRROR", "Closest", "POINT", False, marks=pytest.mark.slow),
-        ("MIRROR", "Linear", "", True),
+        pytest.param("MIRROR", "Linear", "", True, marks=pytest.mark.slow),
     ],
 )
 def test_lookups_as_in_cycles(

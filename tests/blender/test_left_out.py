@@ -38,7 +38,7 @@ def field(studio: Any) -> None:
 @pytest.mark.parametrize(
     ("culled", "kind"),
     [
-        ("camera", "ORTHO"),
+        pytest.param("camera", "ORTHO", marks=pytest.mark.slow),
         pytest.param("camera", "PERSP", marks=pytest.mark.slow),
         pytest.param("distance", "ORTHO", marks=pytest.mark.slow),
         pytest.param("distance", "PERSP", marks=pytest.mark.slow),

@@ -39,10 +39,10 @@ MIRROR_ROUGHNESSES = (0.003, 0.0, 0.01, 0.03)
 
 
 def mirrors() -> Iterator[Any]:
-    """All shaders and roughnesses; each of the first three once among the quick ones."""
+    """All shaders and roughnesses; each of the first two once among the quick ones."""
     for i, (shader, inputs) in enumerate(MIRRORS):
         for j, roughness in enumerate(MIRROR_ROUGHNESSES):
-            yield pytest.param(shader, inputs, roughness, marks=[] if i == j < 3 else [pytest.mark.slow])
+            yield pytest.param(shader, inputs, roughness, marks=[] if i == j < 2 else [pytest.mark.slow])
 
 
 @pytest.mark.parametrize(("shader", "inputs", "roughness"), list(mirrors()))

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import resource
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import bpy
@@ -16,13 +15,8 @@ from shlight.quiet import quiet
 GROWTH = 1.03
 
 
-def resident() -> int:
-    """Bytes of this process in memory."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
-
-
 @pytest.mark.usefixtures("_addon")
-def test_the_addon_can_be_registered_again_and_again() -> None:
+def test_the_addon_can_be_registered_again_and_again(resident: Callable[[], int]) -> None:
     before = 0
     for number in range(105):
         shlight_blender.unregister()
@@ -33,7 +27,7 @@ def test_the_addon_can_be_registered_again_and_again() -> None:
 
 
 @pytest.mark.slow
-def test_an_animation_of_2000_frames(studio: Any) -> None:
+def test_an_animation_of_2000_frames(studio: Any, resident: Callable[[], int]) -> None:
     studio.simple_scene()
     scene, box = studio.scene, bpy.data.objects["Box"]
     scene.render.resolution_x = scene.render.resolution_y = 64

@@ -61,7 +61,7 @@ def stage(studio: Any, moving: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    "moving", ["box", pytest.param("deformation", marks=SLOW), pytest.param("camera", marks=SLOW), "lamp"]
+    "moving", ["box", *(pytest.param(name, marks=SLOW) for name in ("deformation", "camera", "lamp"))]
 )
 def test_what_moves_is_blurred_as_in_cycles(studio: Any, moving: str) -> None:
     """Lamps are not."""
@@ -92,7 +92,7 @@ def test_what_moves_is_displaced_once(studio: Any, monkeypatch: pytest.MonkeyPat
     assert places == [0.0]
 
 
-@pytest.mark.parametrize("position", ["START", "END"])
+@pytest.mark.parametrize("position", ["START", pytest.param("END", marks=SLOW)])
 def test_the_shutter_opens_when_it_is_told(studio: Any, position: str) -> None:
     """Its curve is open for the first half alone, and an object that has no motion blur of its own stays."""
     made = stage(studio, "box")

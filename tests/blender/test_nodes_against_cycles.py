@@ -422,8 +422,10 @@ def picture(studio: Any, engine: str, seed: int = 0) -> Any:
     return studio.render(engine, seed)[::-1, :, :3].astype(np.float64)
 
 
-def test_values_of_nodes(studio: Any) -> None:
-    listed = [(case, own) for case in cases() if (own := material(case)) is not None]
+@pytest.mark.parametrize("step", [3, pytest.param(1, marks=pytest.mark.slow)])
+def test_values_of_nodes(studio: Any, step: int) -> None:
+    """step: cases of which one is tried."""
+    listed = [(case, own) for case in cases()[::step] if (own := material(case)) is not None]
     stage(studio, listed)
     found, references = picture(studio, "SHLIGHT"), [picture(studio, "CYCLES", seed) for seed in SEEDS]
     # What is below 0 after it was raised is light that neither gives.

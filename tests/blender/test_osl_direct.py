@@ -100,7 +100,7 @@ def textured(studio: Any) -> Any:
     return made
 
 
-@pytest.mark.parametrize("disk", [False, True])
+@pytest.mark.parametrize("disk", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_it_is_the_light_that_cycles_samples(studio: Any, disk: bool) -> None:
     stage(studio, textured(studio), use_soft_falloff=disk, use_shadow=False)
     studio.resolution(40, 30)

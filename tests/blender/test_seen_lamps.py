@@ -51,7 +51,7 @@ def interior(reference: Any) -> Any:
 
 
 @pytest.mark.parametrize(
-    "lamp", [name if name in {"sphere", "spread", "sun"} else pytest.param(name, marks=SLOW) for name in LAMPS]
+    "lamp", [name if name in {"sphere", "spread"} else pytest.param(name, marks=SLOW) for name in LAMPS]
 )
 def test_lamp(studio: Any, lamp: str) -> None:
     set_up(studio, lamp)

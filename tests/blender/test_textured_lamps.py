@@ -84,9 +84,7 @@ def told_differences(studio: Any) -> list[str]:
     return [line for line in studio.messages() if "which differ from it by" not in line]
 
 
-@pytest.mark.parametrize(
-    "case", [name if name in {"mirrored", "mapped"} else pytest.param(name, marks=SLOW) for name in CASES]
-)
+@pytest.mark.parametrize("case", [name if name == "mapped" else pytest.param(name, marks=SLOW) for name in CASES])
 def test_it_lights_floors_as_in_cycles(studio: Any, case: str) -> None:
     properties, coordinates = CASES[case]
     node = texture_of(hang(studio, **properties), studio.picture(picture()))

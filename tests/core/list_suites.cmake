@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# Writes to OUTPUT what ctest shall run of PROGRAM: one test for each suite, whatever its types and parameters, and the
-# suites whose names match ACCURACY once more for each of TARGETS, without the tests that match LEFT_OUT.
+# Writes to OUTPUT what ctest shall run of PROGRAM: one test for each suite, whatever its types and parameters, without
+# the tests that match LONGEST, and the suites whose names match ACCURACY once more for each of TARGETS, without the tests
+# that match LEFT_OUT.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n[^ \n]+\\." suites "\n${listed}")
 list(TRANSFORM suites STRIP)
@@ -17,7 +18,7 @@ function(add_suite name suite left_out properties)
 endfunction()
 
 foreach(suite IN LISTS suites)
-  add_suite(${suite} ${suite} "" "")
+  add_suite(${suite} ${suite} "${LONGEST}" "")
   if(suite MATCHES "^(${ACCURACY})$")
     foreach(target IN LISTS TARGETS)
       add_suite(${target}/${suite} ${suite} "${LEFT_OUT}" "ENVIRONMENT SHLIGHT_KERNEL_TARGET=${target}")

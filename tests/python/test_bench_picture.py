@@ -16,9 +16,8 @@ from shlight_tools.bench import picture
 from shlight_tools.bench.picture_renderers import Cycles, Image, Shlight
 
 
-@pytest.mark.parametrize(
-    ("chosen", "scene"), [pytest.param("balls", "balls", marks=pytest.mark.slow), ("--bounces", "cornell")]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("chosen", "scene"), [("balls", "balls"), ("--bounces", "cornell")])
 def test_curves_reach_the_chart_and_the_table(
     chosen: str, scene: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

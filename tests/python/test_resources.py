@@ -230,13 +230,8 @@ def test_python_ends_while_daemon_threads_work(code: int) -> None:
     assert time.monotonic() - start_time < 20
 
 
-def resident() -> int:
-    """Bytes of this process in memory."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
-
-
 @pytest.mark.parametrize(("threads", "first"), [(1, 50), pytest.param(0, 6000, marks=pytest.mark.slow)])
-def test_renders_leave_no_memory_behind(threads: int, first: int) -> None:
+def test_renders_leave_no_memory_behind(threads: int, first: int, resident: Callable[[], int]) -> None:
     """first: renders until oneTBB has all that it keeps for threads to come, 32 MB."""
     before = 0
     for number in range(first + 200 + first // 4):

@@ -23,9 +23,16 @@ PICTURE = re.compile(r"!\[.*?\]\((images/.*?)\)")
 
 
 LOOKED_AT = {"bounces", "models", "own_material"}  # pages that print no more of a picture than its mean
+LONG = {"measured_material", "noise", "own_material", "passes", "relighting"}  # the code of which takes seconds
 
 
-@pytest.mark.parametrize("page", sorted(TASKS.glob("*.md")), ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.stem, marks=pytest.mark.slow if page.stem in LONG else ())
+        for page in sorted(TASKS.glob("*.md"))
+    ],
+)
 def test_a_page_is_as_its_code_has_it(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("images").mkdir()
