@@ -45,8 +45,8 @@ def checkered(studio: Any) -> None:
     studio.camera((0, -12, 1.2), (0, 0, 0.8))
 
 
-def noisy(studio: Any, node: str, properties: dict[str, Any], inputs: dict[str, float]) -> None:
-    """A floor that emits what a node makes of places in metres, seen flat, without its horizon."""
+def noisy(studio: Any, node: str, properties: dict[str, Any], inputs: dict[str, float]) -> Any:
+    """A floor that emits what a node makes of places in metres, seen flat, without its horizon; returns its tree."""
     material = studio.material("ShaderNodeEmission")
     tree = material.node_tree
     made = tree.nodes.new(node)
@@ -58,6 +58,7 @@ def noisy(studio: Any, node: str, properties: dict[str, Any], inputs: dict[str, 
     tree.links.new(made.outputs["Fac"], tree.nodes["Emission"].inputs["Color"])
     studio.plane(900.0, material)
     studio.camera((0, 0, 1.6), (0, 1, 1.25))
+    return tree
 
 
 def bumpy(studio: Any) -> tuple[Any, Any]:
@@ -121,6 +122,34 @@ def test_noise_far_away(studio: Any, node: str, properties: dict[str, Any], inpu
     print(f"one {single:.1e}, many {many:.1e}, Cycles {noise:.1e}")
     assert single <= noise / 10
     assert many <= noise / 100
+
+
+@pytest.mark.parametrize("interpolation", ["LINEAR", "CONSTANT"])
+def test_veins_of_noise_far_away(studio: Any, interpolation: str) -> None:
+    """A steep ramp of two noises, one of which another ramp bends, is seldom what it makes of their means."""
+    tree = noisy(studio, "ShaderNodeTexNoise", {}, {"Scale": 3.0, "Detail": 4.0})
+    (first,) = (node for node in tree.nodes if node.type == "TEX_NOISE")
+    second, bent, mix, ramp = (
+        tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexNoise", "ValToRGB", "Mix", "ValToRGB")
+    )
+    second.inputs["Scale"].default_value, second.inputs["Detail"].default_value = 5.0, 3.0
+    for node, low, high in ((bent, 0.3, 0.8), (ramp, 0.5, 0.6)):
+        node.color_ramp.elements[0].position, node.color_ramp.elements[1].position = low, high
+    ramp.color_ramp.interpolation = interpolation
+    mix.inputs["Factor"].default_value = 0.5
+    tree.links.new(first.inputs["Vector"].links[0].from_socket, second.inputs["Vector"])
+    tree.links.new(second.outputs["Fac"], bent.inputs["Fac"])
+    tree.links.new(first.outputs["Fac"], mix.inputs["A"])
+    tree.links.new(bent.outputs["Color"], mix.inputs["B"])
+    tree.links.new(mix.outputs["Result"], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    studio.resolution(48, 32)
+    ours_at, cycles_at = renders(studio)
+    reference = cycles_at(1024)
+    single, many = (mean_ratio(ours_at(samples), reference) for samples in (1, 64))
+    print(f"mean {single:.3f} {many:.3f}")
+    assert abs(single - 1.0) <= 0.1
+    assert abs(many - 1.0) <= 0.01
 
 
 @pytest.mark.slow

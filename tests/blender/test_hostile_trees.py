@@ -193,7 +193,7 @@ TREES: list[tuple[Callable[[Any, Any], None], str, bool]] = [
     (circle, "its links run in a circle; 0 is used", True),
     (circle_of_shaders, "", False),
     (muted_circle, "", False),
-    (wild_numbers, "", False),
+    (wild_numbers, "an 'IOR' below 1", False),
     (wild_variables, "", False),
     (no_image, "", True),
     (missing_image, "is missing", True),

@@ -8,8 +8,9 @@ from functools import partial
 from operator import add, mul, sub
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from shlight.nodes.footprint_variance import mean_of, unresolved_variance
 from shlight.nodes.mathematics import floor, fraction, power
 from shlight.nodes.program import Table
 from shlight.nodes.values import (
@@ -207,9 +208,25 @@ def invert(c: Varying, factor: Number = 1.0) -> Color:
 
 
 def ramp(factor: Number, colors: ArrayLike, *, interpolate: bool = True) -> Color:
-    """A colour by a number in 0 … 1, from (n, 4) RGBA at even steps."""
+    """A colour by a number in 0 … 1, from (n, 4) RGBA at even steps.
+
+    Where the number is made of means of `noise` over a footprint, the colour is the mean of those for the noise there.
+    """
     table = np.asarray(colors, dtype=np.float32)
-    place = clamp(number(factor))
-    if not interpolate:
-        place = floor(place * float(len(table) - 1)) / float(len(table) - 1)
-    return Color(*(operation("table1", place, data=Table(channel)) for channel in table.T))
+    own, last = number(factor), float(len(table) - 1)
+    variance = unresolved_variance(own)
+    place = clamp(own)
+    stepped = place if interpolate else floor(place * last) / last
+
+    def of_channel(channel: NDArray[np.float32]) -> Value:
+        exact = operation("table1", stepped, data=Table(channel))
+        if variance is None or not np.ptp(channel):
+            return exact
+        at = np.linspace(0.0, 1.0, len(channel))
+
+        def values(x: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.interp(x if interpolate else np.floor(x * last) / last, at, channel)
+
+        return mean_of(values, len(channel), place, exact, variance)
+
+    return Color(*(of_channel(channel) for channel in table.T))
