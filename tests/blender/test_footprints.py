@@ -124,6 +124,27 @@ def test_noise_far_away(studio: Any, node: str, properties: dict[str, Any], inpu
     assert many <= noise / 100
 
 
+def test_a_ramp_of_a_picture_far_away(studio: Any) -> None:
+    """Few of its texels are brighter than where the ramp begins."""
+    material = studio.material("ShaderNodeEmission")
+    tree, spots = (
+        material.node_tree,
+        gaussian_filter(np.random.default_rng(1).normal(size=(128, 128)), 2.0, mode="wrap"),
+    )
+    texture = textured(studio, material, np.repeat(spots[..., None] / spots.std() * 0.15 + 0.5, 3, axis=2), color=False)
+    ramp = tree.nodes.new("ShaderNodeValToRGB")
+    ramp.color_ramp.elements[0].position, ramp.color_ramp.elements[1].position = 0.65, 0.75
+    tree.links.new(texture.outputs["Color"], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    floor(studio, material)
+    studio.camera((0, -9, 5), (0, 0, 0))
+    studio.resolution(48, 32)
+    ours_at, cycles_at = renders(studio)
+    ratio = mean_ratio(ours_at(64), cycles_at(1024))
+    print(f"mean {ratio:.3f}")
+    assert abs(ratio - 1.0) <= 0.02
+
+
 @pytest.mark.parametrize("interpolation", ["LINEAR", "CONSTANT"])
 def test_veins_of_noise_far_away(studio: Any, interpolation: str) -> None:
     """A steep ramp of two noises, one of which another ramp bends, is seldom what it makes of their means."""

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from shlight.nodes.footprint_variance import mean_of, unresolved_variance
 from shlight.nodes.mathematics import floor, fraction, power
 from shlight.nodes.program import Table
+from shlight.nodes.rays import on_ray
 from shlight.nodes.values import (
     Color,
     Number,
@@ -22,6 +23,7 @@ from shlight.nodes.values import (
     clamp,
     color,
     equal,
+    in_order,
     maximum,
     minimum,
     number,
@@ -207,13 +209,21 @@ def invert(c: Varying, factor: Number = 1.0) -> Color:
     return _map(lambda x: t * (1.0 - x) + (1.0 - t) * x, color(c))
 
 
+LEAST_BEND = 1e-5  # difference of the steps before and after one of a ramp; below it is rounding
+
+
 def ramp(factor: Number, colors: ArrayLike, *, interpolate: bool = True) -> Color:
     """A colour by a number in 0 … 1, from (n, 4) RGBA at even steps.
 
     Where the number is made of means of `noise` over a footprint, the colour is the mean of those for the noise there.
+    Pictures in it are looked up without footprints, unless the colours are even steps too: of what they vary by there
+    nothing is known.
     """
     table = np.asarray(colors, dtype=np.float32)
     own, last = number(factor), float(len(table) - 1)
+    is_bent = len(table) > 2 and np.abs(np.diff(table, 2, axis=0)).max() > LEAST_BEND
+    if is_bent and any(step.name == "image" for step in in_order([own.step])):
+        (own,) = on_ray([own], None, filtered=False)
     variance = unresolved_variance(own)
     place = clamp(own)
     stepped = place if interpolate else floor(place * last) / last
