@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from shlight.nodes.footprint_variance import mean_of, unresolved_variance
 from shlight.nodes.mathematics import floor, fraction, power
 from shlight.nodes.program import Table
-from shlight.nodes.rays import on_ray
+from shlight.nodes.rays import unfiltered
 from shlight.nodes.values import (
     Color,
     Number,
@@ -216,15 +216,15 @@ def ramp(factor: Number, colors: ArrayLike, *, interpolate: bool = True) -> Colo
     """A colour by a number in 0 … 1, from (n, 4) RGBA at even steps.
 
     Where the number is made of means of `noise` over a footprint, the colour is the mean of those for the noise there.
-    Pictures in it are looked up without footprints, unless the colours are even steps too: of what they vary by there
-    nothing is known.
+    Pictures, waves and other kinds of noise in it are looked up without footprints. Colours on a straight line need
+    neither.
     """
     table = np.asarray(colors, dtype=np.float32)
     own, last = number(factor), float(len(table) - 1)
     is_bent = len(table) > 2 and np.abs(np.diff(table, 2, axis=0)).max() > LEAST_BEND
-    if is_bent and any(step.name == "image" for step in in_order([own.step])):
-        (own,) = on_ray([own], None, filtered=False)
-    variance = unresolved_variance(own)
+    variance = unresolved_variance(own) if is_bent else None
+    if is_bent and (variance is None or any(step.name == "image" for step in in_order([own.step]))):
+        own, variance = unfiltered(own), None
     place = clamp(own)
     stepped = place if interpolate else floor(place * last) / last
 

@@ -91,7 +91,7 @@ def _propagated(step: Step, given: list[_Varying | None]) -> _Varying | None:
         v = [select(a[0], v[1], v[2])]
     elif step.name not in _SUMS:
         return None
-    # Of one noise deviations add up, as where a grey becomes its luminance.
+    # Deviations that one noise makes add up, as where a grey becomes its luminance.
     is_shared = len(varying) == 2 and not varying[0].noises.isdisjoint(varying[1].noises)
     total = 2.0 * sqrt(v[0] * v[1]) if is_shared and len(v) == 2 else number(0.0)
     return _Varying(sum(v, start=total), noises)

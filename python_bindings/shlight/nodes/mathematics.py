@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from shlight.nodes.rays import unfiltered
 from shlight.nodes.values import (
     Number,
     Value,
@@ -90,7 +91,8 @@ def _named(name: str) -> Callable[[Value, Value, Value], Value]:
     return lambda a, b, c: operation(name, a)
 
 
-# Operations of the Math node by Blender's names; b and c are the second and third input.
+# Operations of the Math node by Blender's names; b and c are the second and third input. A mean over a footprint may be
+# above what most of it is below.
 MATH: dict[str, Callable[[Value, Value, Value], Value]] = {
     "ADD": lambda a, b, c: a + b,
     "SUBTRACT": lambda a, b, c: a - b,
@@ -105,8 +107,8 @@ MATH: dict[str, Callable[[Value, Value, Value], Value]] = {
     "EXPONENT": lambda a, b, c: operation("exp", a),
     "MINIMUM": lambda a, b, c: minimum(a, b),
     "MAXIMUM": lambda a, b, c: maximum(a, b),
-    "LESS_THAN": lambda a, b, c: a < b,
-    "GREATER_THAN": lambda a, b, c: a > b,
+    "LESS_THAN": lambda a, b, c: unfiltered(a) < unfiltered(b),
+    "GREATER_THAN": lambda a, b, c: unfiltered(a) > unfiltered(b),
     "SIGN": lambda a, b, c: sign(a),
     "COMPARE": _compare,
     "SMOOTH_MIN": smooth_minimum,
@@ -197,10 +199,14 @@ def map_range(
 ) -> Value:
     """A number of one range in another; interpolation: "linear", "stepped", "smoothstep" or "smootherstep".
 
+    Where the map is bent or clamped, noises and pictures in the number are looked up without footprints.
+
     >>> worn = nodes.map_range(nodes.noise(scale=4).x, 0.4, 0.6, 0.1, 0.5)  # roughness in spots
     >>> steel = nodes.glossy((0.6, 0.6, 0.6), worn)
     """
     x, a, b, c, d = (number(n) for n in (value, from_low, from_high, to_low, to_high))
+    if clamped or interpolation != "linear":
+        x = unfiltered(x)
     share = (x - a) / (b - a)
     if interpolation == "stepped":
         count = number(steps)

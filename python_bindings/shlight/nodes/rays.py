@@ -44,6 +44,11 @@ def on_ray(values: Iterable[Value], kind: Ray | None, *, filtered: bool = True) 
     return _replaced(values, known, filtered=filtered)
 
 
+def unfiltered(value: Value) -> Value:
+    """A number that is bent so much that its mean over a footprint would become something else than the mean."""
+    return on_ray([value], None, filtered=False)[0]
+
+
 def with_vectors(values: Iterable[Value], vectors: Mapping[str, Vector]) -> list[Value]:
     """Expressions that read other vectors in the place of some sources, "position" for instance."""
     known: dict[Any, Value] = {(source, 0, i): c for source, own in vectors.items() for i, c in enumerate(own)}
