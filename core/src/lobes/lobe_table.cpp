@@ -43,8 +43,9 @@ void check_numbers(const char* name, const std::vector<float>& numbers) {
     }
 }
 
+/// To 1e-8 at the pole, where tables are smooth.
 double polar_angle(const Vec3d& w) {
-    return std::atan2(std::hypot(w.x, w.y), w.z);
+    return std::acos(std::clamp(w.z, -1.0, 1.0));
 }
 
 double azimuth_of(const Vec3d& w) {
@@ -184,8 +185,11 @@ double LobeTable::value(const Vec3d& wi, const Vec3d& wo, int channel) const {
     if (angles_ == TableAngles::half_vector) {
         return interpolated(half_vector_angles(wi, wo), channel) / (wi.z + wo.z);
     }
-    const double turned = axes_[1].size() == 1 ? azimuth_of(wi) : 0.0;
-    return interpolated({polar_angle(wi), azimuth_of(wi), polar_angle(wo), azimuth_of(wo) - turned}, channel);
+    if (axes_[1].size() == 1) {
+        const double between = std::atan2(wi.x * wo.y - wi.y * wo.x, wi.x * wo.x + wi.y * wo.y);
+        return interpolated({polar_angle(wi), 0, polar_angle(wo), between}, channel);
+    }
+    return interpolated({polar_angle(wi), azimuth_of(wi), polar_angle(wo), azimuth_of(wo)}, channel);
 }
 
 double LobeTable::reflected(const Vec3d& wi, const Vec3d& wo, double azimuth, int channel) const {
