@@ -164,6 +164,8 @@ KEY = "F19"
 # Blender lets no script write while any thread is in a method of a class that draws or renders, and sometimes leaves it
 # at that as a render ends, for which a step waits that has begun before. What it prints of that is the test's to judge.
 READ_ONLY = "can't run in readonly state"
+# Nor does it reload scripts while a comparison or a render goes on in the window.
+REFUSALS = (READ_ONLY, "Can't reload with running modal operators")
 
 
 class SHLIGHT_OT_step(bpy.types.Operator):
@@ -181,7 +183,7 @@ class SHLIGHT_OT_step(bpy.types.Operator):
         try:
             STEP[name][1]()
         except Exception as error:
-            if READ_ONLY not in str(error):
+            if not any(refusal in str(error) for refusal in REFUSALS):
                 traceback.print_exc()
         return {"FINISHED"}
 
