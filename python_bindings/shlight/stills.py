@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import ast
+import errno
+import os
 import runpy
 import sys
 import warnings
@@ -15,6 +17,7 @@ from shlight._core import Scene
 from shlight.commands import CommandError
 from shlight.images import read_environment
 from shlight.models import SUFFIXES, load
+from shlight.progress import Progress
 from shlight.rendering import render
 
 BUILDERS = ("build_scene", "build")  # functions of scripts that return a Scene
@@ -56,6 +59,7 @@ def render_still(
     """
     if out.suffix.lower() not in (".png", ".exr"):
         raise ValueError(f"out must end in .png or .exr, got '{out}'")
+    _check_writable(out)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         scene = load(path) if path.suffix.lower() in SUFFIXES else _built(path)
@@ -63,16 +67,32 @@ def render_still(
         print(f"shlight render: {warning.message}", file=sys.stderr)
     if environment is not None:
         scene.set_environment(read_environment(environment))
+    bar = Progress(1)
+    bar.begin(f"rendering {path.name}")
     try:
-        result = render(scene, *size, threads=threads, **{name: _value(text) for name, text in settings.items()})
+        given = {name: _value(text) for name, text in settings.items()}
+        result = render(scene, *size, threads=threads, progress=bar.step, **given)
     except TypeError as error:
         raise ValueError(f"--set: {error}") from None
+    finally:
+        bar.interrupt()
     result.save(out)
     report = result.report
     assert report is not None
     if report.dark:
         raise CommandError(f"{out} is black: {report.dark}; --environment FILE gives it a sky", 1)
     print(f"{out}: {report.build_seconds + report.render_seconds:.1f} s, noise {report.noise:.2g}")
+
+
+def _check_writable(out: Path) -> None:
+    """Raises the OSError that a file would meet after its render."""
+    folder = out.absolute().parent
+    known = os.access in os.supports_effective_ids
+    problem = errno.ENOENT
+    if folder.is_dir():
+        problem = 0 if os.access(folder, os.W_OK, effective_ids=known) else errno.EACCES
+    if problem:
+        raise OSError(problem, os.strerror(problem), str(out))
 
 
 def _built(path: Path) -> Scene:

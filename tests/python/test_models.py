@@ -237,3 +237,8 @@ def test_the_command_renders_models_and_scripts(tmp_path: Path, capsys: pytest.C
     assert cli.main(["render", str(script), "--out", str(tmp_path / "x.png"), *common]) == 2
     assert "must return a shlight.Scene" in capsys.readouterr().err
     assert cli.main(["render", str(tmp_path / "m.glb"), "--out", str(tmp_path / "x.jpg")]) == 2
+    capsys.readouterr()
+    assert cli.main(["render", str(tmp_path / "m.glb"), "--out", str(tmp_path / "none" / "x.png")]) == 2
+    said = capsys.readouterr()
+    assert said.out == "", "nothing was rendered"
+    assert f"{tmp_path / 'none' / 'x.png'}: No such file" in said.err
