@@ -110,7 +110,7 @@ MATH: dict[str, Callable[[Value, Value, Value], Value]] = {
     "LESS_THAN": lambda a, b, c: unfiltered(a) < unfiltered(b),
     "GREATER_THAN": lambda a, b, c: unfiltered(a) > unfiltered(b),
     "SIGN": lambda a, b, c: sign(a),
-    "COMPARE": _compare,
+    "COMPARE": lambda a, b, c: _compare(unfiltered(a), unfiltered(b), c),
     "SMOOTH_MIN": smooth_minimum,
     "SMOOTH_MAX": lambda a, b, c: -smooth_minimum(-a, -b, c),
     "ROUND": lambda a, b, c: floor(a + 0.5),
