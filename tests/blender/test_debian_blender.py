@@ -320,6 +320,27 @@ def test_the_rendered_viewport(tmp_path: Path) -> None:
     check_screen(tmp_path, found["region"])
 
 
+@pytest.mark.slow
+def test_a_viewport_that_stays_open(tmp_path: Path) -> None:
+    """It is never blank in ten minutes of edits, and takes no more memory in the last than after two."""
+    seconds = 600
+    arguments = (os.environ.get("SHLIGHT_SEED", "1"), str(seconds))
+    code, output = run_in_window(
+        script="debian_edits.py", folder=tmp_path, size=(640, 480), after=arguments, seconds=4 * seconds
+    )
+    assert code == 0, output
+    assert "Traceback" not in output, output
+    found = json.loads((tmp_path / "found.json").read_text())
+    x, y, width, height = found["region"]
+    for picture in sorted(tmp_path.glob("*.png")):
+        window = oiio.ImageBuf(str(picture)).get_pixels(oiio.FLOAT)[::-1]
+        middle = window[y + height // 3 : y + 2 * height // 3, x + width // 3 : x + 2 * width // 3, :3]
+        assert np.ptp(middle) >= 0.1, picture
+    resident = np.median(np.reshape(found["resident"], (-1, 20)), axis=1)  # of each 20 seconds
+    print("MB:", *(resident / 2**20).round())
+    assert resident[-1] <= 1.02 * resident[5]
+
+
 def check_screen(folder: Path, region: list[int]) -> None:
     """The window shows the picture, which has half as many pixels, where the viewport is, without header and tools."""
     x, y, width, height = region
