@@ -232,11 +232,6 @@ def ramp(factor: Number, colors: ArrayLike, *, interpolate: bool = True) -> Colo
         exact = operation("table1", stepped, data=Table(channel))
         if variance is None or not np.ptp(channel):
             return exact
-        at = np.linspace(0.0, 1.0, len(channel))
-
-        def values(x: NDArray[np.float64]) -> NDArray[np.float64]:
-            return np.interp(x if interpolate else np.floor(x * last) / last, at, channel)
-
-        return mean_of(values, len(channel), place, exact, variance)
+        return mean_of(channel, place, exact, variance, interpolate=interpolate)
 
     return Color(*(of_channel(channel) for channel in table.T))

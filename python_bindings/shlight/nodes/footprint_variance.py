@@ -8,9 +8,9 @@ taken for normally distributed. Variances are those of the first order. Differen
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from functools import lru_cache
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,24 +23,37 @@ from shlight.nodes.values import Step, Value, clamp, in_order, number, operation
 DEVIATIONS = np.linspace(0.0, 0.16, 17)
 PLACES = np.array([NormalDist().inv_cdf((i + 0.5) / 64) for i in range(64)])
 
-Function = Callable[[NDArray[Any]], NDArray[Any]]
+
+@lru_cache(maxsize=4)
+def _weights(count: int, interpolate: bool) -> NDArray[np.float64]:
+    """Weights of a table's entries (last axis) in its means, by deviation and place; interpolate: between entries, in
+    place of the entry before."""
+    last = count - 1
+    at = last * np.clip(np.linspace(0.0, 1.0, count) + DEVIATIONS[:, None, None] * PLACES[:, None], 0.0, 1.0)
+    low = np.minimum(at.astype(int), last - 1)
+    share = (at if interpolate else np.floor(at)) - low
+    weights = np.zeros((len(DEVIATIONS), count, count))
+    deviation, _, place = np.indices(at.shape, sparse=True)
+    np.add.at(weights, (deviation, place, low), 1.0 - share)
+    np.add.at(weights, (deviation, place, low + 1), share)
+    return weights / len(PLACES)
 
 
 class _Means(Table):
-    """Means of a function over normal distributions, by their mean and deviation; `variance` is another such table."""
+    """Means of a table over normal distributions, by their mean and deviation; `variance` is another such table."""
 
-    def __init__(self, function: Function, count: int) -> None:
-        given = np.linspace(0.0, 1.0, count) + DEVIATIONS[:, None, None] * PLACES[:, None]
-        values = function(np.clip(given, 0.0, 1.0))
-        super().__init__(values.mean(axis=1))
-        self.variance = Table(values.var(axis=1))
+    def __init__(self, table: NDArray[np.float32], interpolate: bool) -> None:
+        weights, values = _weights(len(table), interpolate), table.astype(np.float64)
+        mean = weights @ values
+        super().__init__(mean)
+        self.variance = Table(np.maximum(weights @ (values * values) - mean * mean, 0.0))
 
 
-def mean_of(function: Function, count: int, place: Value, exact: Value, variance: Value) -> Value:
-    """The mean of what a function of a number in 0 … 1 makes where the number varies around `place`; exact: what it
-    makes of one that does not; count: of places at which it is tabulated."""
+def mean_of(table: NDArray[np.float32], place: Value, exact: Value, variance: Value, *, interpolate: bool) -> Value:
+    """The mean of a table over 0 … 1 where the number that it is read at varies around `place`; exact: what it has for
+    one that does not; interpolate: between entries, in place of the entry before."""
     deviation = clamp(sqrt(variance) * (1.0 / DEVIATIONS[-1]))
-    return select(variance > 0.0, operation("table2", place, deviation, data=_Means(function, count)), exact)
+    return select(variance > 0.0, operation("table2", place, deviation, data=_Means(table, interpolate)), exact)
 
 
 class _Varying(NamedTuple):

@@ -45,7 +45,7 @@ def on_ray(values: Iterable[Value], kind: Ray | None, *, filtered: bool = True) 
 
 
 def unfiltered(value: Value) -> Value:
-    """A number that is bent so much that its mean over a footprint would become something else than the mean."""
+    """The number with pictures and noises as they are at the hit: what bends a mean gives no mean of what it bends."""
     return on_ray([value], None, filtered=False)[0]
 
 
