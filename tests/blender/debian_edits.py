@@ -14,7 +14,7 @@ import bpy
 from mathutils import Quaternion
 
 sys.path.append(str(Path(__file__).parent))
-from debian_steps import FOLDER, start
+from debian_steps import FOLDER, area_of, start
 
 SEED, SECONDS = map(int, sys.argv[-2:])
 chance = random.Random(SEED)
@@ -22,7 +22,7 @@ found = {"resident": []}  # each second
 
 
 def area():
-    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
+    return area_of("VIEW_3D")
 
 
 def surface():

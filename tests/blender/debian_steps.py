@@ -16,6 +16,11 @@ import shlight_blender
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 
 
+def area_of(kind: str) -> Any:
+    """The window's first area of a kind, which is there."""
+    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == kind)
+
+
 def start(plan: Generator[None, None, None], found: dict[str, Any], seconds: float = 0.1) -> None:
     """A step as often; `found` becomes the file found.json."""
 

@@ -13,7 +13,7 @@ from shlight_blender import viewport
 from shlight_blender.picture_maker import PictureMaker
 
 sys.path.append(str(Path(__file__).parent))
-from debian_steps import FOLDER, start
+from debian_steps import FOLDER, area_of, start
 
 LONGEST_WAIT, CALM = 600, 4  # ticks
 found = {"updated": {}, "differs": {}, "anew": {}}
@@ -50,7 +50,7 @@ def watch():
 
 
 def area():
-    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
+    return area_of("VIEW_3D")
 
 
 def region():

@@ -11,7 +11,7 @@ from shlight_blender import engine, record
 from shlight_blender.ui import panels
 
 sys.path.append(str(Path(__file__).parent))
-from debian_steps import FOLDER, start
+from debian_steps import FOLDER, area_of, start
 
 ended = []
 drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "previews": []}
@@ -37,10 +37,6 @@ def watch():
         drawn["viewport_updates"] += 1
 
     engine.ShlightRenderEngine.view_update = view_update
-
-
-def area_of(kind):
-    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == kind)
 
 
 def steps():
