@@ -43,7 +43,7 @@ void check_numbers(const char* name, const std::vector<float>& numbers) {
     }
 }
 
-/// To 1e-8 at the pole, where tables are smooth.
+/// It errs by 1e-8 at the pole, where tables are smooth.
 double polar_angle(const Vec3d& w) {
     return std::acos(std::clamp(w.z, -1.0, 1.0));
 }
