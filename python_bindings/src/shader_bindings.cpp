@@ -167,14 +167,19 @@ LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "lambert" || kind == "translucent") {
         return LambertShape{};
     }
-    if (kind == "oren_nayar") {
-        return DiffuseShape{Diffuse::oren_nayar};
-    }
-    if (kind == "oren_nayar_loss") {
-        return DiffuseShape{Diffuse::oren_nayar_loss};
-    }
-    if (kind == "bumped_lambert") {
-        return DiffuseShape{Diffuse::bumped};
+    static const std::array<std::pair<std::string_view, LobeShape>, 8> kDiffuse = {
+        {{"oren_nayar", DiffuseShape{Diffuse::oren_nayar}},
+         {"oren_nayar_loss", DiffuseShape{Diffuse::oren_nayar_loss}},
+         {"bumped_lambert", DiffuseShape{Diffuse::bumped}},
+         {"disney", kDisneyDiffuse},
+         {"disney_retro", kDisneyRetro},
+         {"disney_retro_square", kDisneyRetroSquare},
+         {"disney_entry", kDisneyEntry},
+         {"disney_sheen", kDisneySheen}}};
+    for (const auto& [name, shape] : kDiffuse) {
+        if (kind == name) {
+            return shape;
+        }
     }
     if (kind == "toon" || kind == "glossy_toon") {
         return ToonShape{kind != "toon"};

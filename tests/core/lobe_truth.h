@@ -20,6 +20,17 @@ inline Vec3d view_direction(double cos_theta_o) {
     return {std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o};
 }
 
+inline std::vector<LobeShape> rough_diffuse_shapes() {
+    return {DiffuseShape{Diffuse::oren_nayar},
+            DiffuseShape{Diffuse::oren_nayar_loss},
+            DiffuseShape{Diffuse::bumped},
+            kDisneyDiffuse,
+            kDisneyRetro,
+            kDisneyRetroSquare,
+            kDisneyEntry,
+            kDisneySheen};
+}
+
 /// Σ of terms at m ≥ 0 times a direction's basis.
 inline double expansion(const std::vector<float>& terms, int order, const std::vector<double>& basis) {
     double sum = 0;

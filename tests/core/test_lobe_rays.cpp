@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "lobe_truth.h"
 #include "lobes/refraction.h"
 #include "random_input.h"
 #include "shlight/lobe_table.h"
@@ -42,9 +43,8 @@ std::shared_ptr<const LobeTable> random_table() {
 
 std::vector<LobeShape> shapes() {
     std::vector<LobeShape> list = {LambertShape()};
-    for (const Diffuse kind : {Diffuse::oren_nayar, Diffuse::oren_nayar_loss, Diffuse::bumped}) {
-        list.emplace_back(DiffuseShape{kind});
-    }
+    const std::vector<LobeShape> diffuse = testing::rough_diffuse_shapes();
+    list.insert(list.end(), diffuse.begin(), diffuse.end());
     for (const double alpha : {0.01, 0.3, 1.0}) {
         for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick, Fresnel::dielectric, Fresnel::dip}) {
             list.emplace_back(GgxShape{alpha, fresnel, 1.45});

@@ -67,6 +67,9 @@ TEST(PolygonRule, AgreesWithAFineRuleOfTheScalarLobes) {
         LambertShape{},
         DiffuseShape{Diffuse::oren_nayar},
         DiffuseShape{Diffuse::bumped},
+        kDisneyDiffuse,
+        kDisneyRetroSquare,
+        kDisneySheen,
     };
     for (const LobeShape& shape : shapes) {
         std::vector<Vec3d> vertices;

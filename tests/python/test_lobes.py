@@ -232,9 +232,11 @@ def test_the_parts_of_disneys_diffuse_reflection() -> None:
         retro = roughness * (1 + sun @ VIEW)
         f = (1 - light / 2) * (1 - view / 2) + retro * (light + view + light * view * (retro - 1))
         found = radiance(nodes.disney_diffuse(0.7, roughness), sun)
-        np.testing.assert_allclose(found, 0.7 * f * sun[2] / math.pi, rtol=2e-3)
+        np.testing.assert_allclose(found, 0.7 * f * sun[2] / math.pi, rtol=1e-5)
         cosine = math.sqrt((1 + sun @ VIEW) / 2)
-        np.testing.assert_allclose(radiance(nodes.disney_sheen(0.7), sun), 0.7 * (1 - cosine) ** 5 * sun[2], atol=1e-4)
+        np.testing.assert_allclose(
+            radiance(nodes.disney_sheen(0.7), sun), 0.7 * (1 - cosine) ** 5 * sun[2], rtol=1e-5, atol=1e-7
+        )
 
 
 @pytest.mark.parametrize(("n", "k"), [(0.18, 3.42), (1.37, 1.77), (2.76, 3.87), (1.1, 6.6), (0.0, 1.0)])

@@ -63,6 +63,36 @@ struct DiffuseShape {
     auto operator<=>(const DiffuseShape&) const = default;
 };
 
+/// cosθ_i ((1 + ω_i·ω_o)ⁿ (base + light F_i + view F_o + both F_i F_o) / π + sheen (1 - cosθ_d)⁵), with F = (1 - cosθ)⁵
+/// of light and view, and θ_d half the angle between them: parts of Disney's diffuse reflection (Burley 2015,
+/// "Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering", Eq. 4) and its sheen (Burley 2012,
+/// "Physically-Based Shading at Disney").
+struct DisneyShape {
+    double base = 0, light = 0, view = 0, both = 0;
+    int power = 0;  ///< n, 0 … 2
+    double sheen = 0;
+
+    bool is_glossy() const { return false; }
+    double width() const { return 1; }
+    double value(const Vec3d& wi, const Vec3d& wo) const;
+    double albedo(double cos_theta_o) const;
+    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
+    double density(const Vec3d& wo, const Vec3d& wi) const;
+    double largest_density(const Vec3d& wo) const;
+    LambertShape sampled() const { return {}; }
+
+    // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
+    auto operator<=>(const DisneyShape&) const = default;
+};
+
+/// These are multiplied with powers of the roughness, from the 0th on.
+inline constexpr DisneyShape kDisneyDiffuse = {1, -0.5, -0.5, 0.25};
+inline constexpr DisneyShape kDisneyRetro = {0, 1, 1, -1, 1};
+inline constexpr DisneyShape kDisneyRetroSquare = {0, 0, 0, 1, 2};
+/// kDisneyDiffuse without the factor of the view.
+inline constexpr DisneyShape kDisneyEntry = {1, -0.5};
+inline constexpr DisneyShape kDisneySheen = {0, 0, 0, 0, 0, 1};
+
 /// The Fresnel factor of D G / (4 cosθ_i cosθ_o).
 enum class Fresnel {
     one,         ///< 1: the part with factor f0, and metals without Fresnel
@@ -136,7 +166,7 @@ struct ToonShape {
 
 struct TableShape;
 
-using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape, ToonShape, TableShape>;
+using LobeShape = std::variant<LambertShape, DiffuseShape, DisneyShape, GgxShape, ToonShape, TableShape>;
 
 /// A colour channel of a table, times cosθ_i.
 struct TableShape {

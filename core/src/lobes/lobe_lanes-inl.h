@@ -21,6 +21,7 @@
 #include <numbers>
 #include <variant>
 
+#include "lobes/disney-inl.h"
 #include "lobes/ggx-inl.h"
 #include "lobes/lambert-inl.h"
 #include "lobes/rough_diffuse-inl.h"

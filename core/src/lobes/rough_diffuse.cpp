@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Rough diffuse lobes, one direction at a time. All draw rays with Lambert's density.
+// Rough diffuse lobes and Disney's, one direction at a time. All draw rays with Lambert's density.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "lobes/rough_diffuse.h"
@@ -42,21 +44,35 @@ double light_on_circle(double cosine, const Vec3d& wo) {
     return 2 * (mean * end + swing * std::sin(end));
 }
 
-/// The bumped lobe's albedo to 1e-6, by circles around ω_o: those that cross the horizon, up to sinθ_o, and the others.
-double bumped_albedo(double cos_theta_o) {
+/// ∫ f·cos dω to 1e-6 of an f that depends on the angle between ω_i and ω_o alone, by circles around ω_o: those that
+/// cross the horizon, up to sinθ_o, and the others. f takes the cosine; it is 0 where that is below `least`, 0 or -1.
+template <class Function>
+double albedo_by_circles(double cos_theta_o, double least, const Function& f) {
     const Vec3d wo(std::sqrt(std::max(0.0, 1 - cos_theta_o * cos_theta_o)), 0, cos_theta_o);
-    const auto reflected = [&](double cosine) { return bump_shadow(cosine, wo.z) * light_on_circle(cosine, wo); };
+    const auto reflected = [&](double cosine) { return f(cosine) * light_on_circle(cosine, wo); };
     constexpr int kPoints = 12;
     const GaussRule& rule = gauss_rule(kPoints);
+    const double begin = least * wo.x;
+    const double length = wo.x - begin;
     double sum = 0;
     for (std::size_t i = 0; i < kPoints; ++i) {
         const double x = rule.nodes[i];
         // The cubic evens out the roots at both ends.
-        const double crossing = wo.x * x * x * (3 - 2 * x);
+        const double crossing = begin + length * x * x * (3 - 2 * x);
         sum += rule.weights[i] *
-               (6 * wo.x * x * (1 - x) * reflected(crossing) + (1 - wo.x) * reflected(wo.x + (1 - wo.x) * x));
+               (6 * length * x * (1 - x) * reflected(crossing) + (1 - wo.x) * reflected(wo.x + (1 - wo.x) * x));
     }
-    return sum / pi;
+    return sum;
+}
+
+/// (1 - cosine)⁵
+double rise(double cosine) {
+    return std::pow(1 - cosine, 5);
+}
+
+/// cosθ_d of the angle between ω_i and ω_o, whose cosine is given.
+double half_angle_cosine(double cosine) {
+    return std::sqrt(std::max(0.0, (1 + cosine) / 2));
 }
 
 }  // namespace
@@ -93,7 +109,8 @@ double DiffuseShape::albedo(double cos_theta_o) const {
         case Diffuse::oren_nayar_loss:
             return pi * (6.0 / 5 - pi / 6);
         case Diffuse::bumped:
-            return bumped_albedo(cos_theta_o);
+            return albedo_by_circles(cos_theta_o, 0,
+                                     [&](double cosine) { return bump_shadow(cosine, cos_theta_o) / pi; });
     }
     return 0;
 }
@@ -107,6 +124,44 @@ double DiffuseShape::density(const Vec3d& wo, const Vec3d& wi) const {
 }
 
 double DiffuseShape::largest_density(const Vec3d& wo) const {
+    return LambertShape().largest_density(wo);
+}
+
+double DisneyShape::value(const Vec3d& wi, const Vec3d& wo) const {
+    const double between = glm::dot(wi, wo);
+    const double light_rise = rise(wi.z);
+    const double view_rise = rise(wo.z);
+    const double flat = base + light * light_rise + view * view_rise + both * light_rise * view_rise;
+    return wi.z * (flat * std::pow(1 + between, power) / pi + sheen * rise(half_angle_cosine(between)));
+}
+
+/// The mean of (1 + ω_i·ω_o)ⁿ along a circle cosθ_i = c is a polynomial of c, and ∫ cᵏ (1 - c)⁵ dc = k! 5! / (k + 6)!.
+double DisneyShape::albedo(double cos_theta_o) const {
+    const double c = cos_theta_o;
+    const double half_sin2 = (1 - c * c) / 2;
+    const std::array<std::array<double, 3>, 3> means = {
+        {{1, 0, 0}, {1, c, 0}, {1 + half_sin2, 2 * c, c * c - half_sin2}}};
+    constexpr std::array<double, 3> kRises = {1.0 / 42, 1.0 / 168, 1.0 / 504};
+    const double constant = base + view * rise(c);
+    const double slope = light + both * rise(c);
+    double sum = 0;
+    for (std::size_t k = 0; k < kRises.size(); ++k) {
+        sum += 2 * means[static_cast<std::size_t>(power)][k] *
+               (constant / (static_cast<double>(k) + 2) + slope * kRises[k]);
+    }
+    const auto fuzz = [](double cosine) { return rise(half_angle_cosine(cosine)); };
+    return sheen != 0 ? sum + sheen * albedo_by_circles(c, -1, fuzz) : sum;
+}
+
+Vec3d DisneyShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
+    return LambertShape().sample(wo, point);
+}
+
+double DisneyShape::density(const Vec3d& wo, const Vec3d& wi) const {
+    return LambertShape().density(wo, wi);
+}
+
+double DisneyShape::largest_density(const Vec3d& wo) const {
     return LambertShape().largest_density(wo);
 }
 

@@ -3,22 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from shlight import _core, _tables
 from shlight.nodes.shader import Lobe, Shader
 from shlight.nodes.subsurface import subsurface
 from shlight.nodes.values import Number, Varying, Vector, clamp, color, number, reflectance, vector
-
-Doubles = NDArray[np.float64]
-
-STEPS, AZIMUTHS = 64, 33  # of the tables: of a right angle, and of half a turn
 
 
 def disney_diffuse(albedo: Varying, roughness: Number, *, at: Vector | None = None) -> Shader:
@@ -31,9 +21,8 @@ def disney_diffuse(albedo: Varying, roughness: Number, *, at: Vector | None = No
     rho = reflectance(albedo, "albedo")
     r = clamp(number(roughness, "roughness"))
     n = None if at is None else vector(at, "at")
-    return Shader(
-        tuple(Lobe(_diffuse_lobe(i), color(rho * share), normal=n) for i, share in enumerate((number(1.0), r, r * r)))
-    )
+    powers = {"disney": number(1.0), "disney_retro": r, "disney_retro_square": r * r}
+    return Shader(tuple(Lobe(kind, color(rho * share), normal=n) for kind, share in powers.items()))
 
 
 def disney_subsurface(
@@ -45,7 +34,7 @@ def disney_subsurface(
     `nodes.subsurface`. Raises ValueError naming an argument.
     """
     body = subsurface(albedo, radius, at=at, **below).lobes
-    entry = tuple(replace(lobe, kind=_entry_lobe()) for lobe in body if lobe.below is not None)
+    entry = tuple(replace(lobe, kind="disney_entry") for lobe in body if lobe.below is not None)
     if not entry:
         return disney_diffuse(albedo, roughness, at=at)
     return Shader(entry + disney_diffuse(albedo, roughness, at=at).lobes[1:])
@@ -57,39 +46,4 @@ def disney_sheen(tint: Varying, *, at: Vector | None = None) -> Shader:
     Raises ValueError naming an argument.
     """
     n = None if at is None else vector(at, "at")
-    return Shader((Lobe(_sheen_lobe(), reflectance(tint, "tint"), normal=n),))
-
-
-def _axes() -> tuple[Doubles, Doubles, Doubles, Doubles]:
-    """Angles of the light and the view and azimuths between them; and 1 + ω_i·ω_o over all of them."""
-    theta = np.linspace(0.0, math.pi / 2, STEPS + 1)
-    phi = np.linspace(0.0, math.pi, AZIMUTHS)
-    light, view = theta[:, None, None], theta[None, :, None]
-    return theta, theta, phi, 1.0 + np.cos(light) * np.cos(view) + np.sin(light) * np.sin(view) * np.cos(phi)
-
-
-@lru_cache(maxsize=3)
-def _diffuse_lobe(power: int) -> _core.Bsdf:
-    """The lobe that a power of the roughness is multiplied with."""
-    theta_i, theta_o, phi, across = _axes()
-    light, view = ((1.0 - np.cos(theta)) ** 5 for theta in (theta_i[:, None, None], theta_o[None, :, None]))
-    f = (
-        (1.0 - 0.5 * light) * (1.0 - 0.5 * view) * np.ones_like(across),
-        across * (light + view - light * view),
-        across**2 * light * view,
-    )[power]
-    return _tables.from_table(f[:, None] / math.pi, theta_i, [0.0], theta_o, phi)
-
-
-@lru_cache(maxsize=1)
-def _entry_lobe() -> _core.Bsdf:
-    theta_i, theta_o, phi, across = _axes()
-    f = (1.0 - 0.5 * (1.0 - np.cos(theta_i[:, None, None])) ** 5) * np.ones_like(across)
-    return _tables.from_table(f[:, None] / math.pi, theta_i, [0.0], theta_o, phi)
-
-
-@lru_cache(maxsize=1)
-def _sheen_lobe() -> _core.Bsdf:
-    theta_i, theta_o, phi, across = _axes()
-    cosine = np.sqrt(np.clip(across / 2.0, 0.0, 1.0))
-    return _tables.from_table((1.0 - cosine[:, None]) ** 5, theta_i, [0.0], theta_o, phi)
+    return Shader((Lobe("disney_sheen", reflectance(tint, "tint"), normal=n),))

@@ -47,12 +47,12 @@ class Subsurface:
 class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
-    # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; one lobe of a Bsdf; "toon" and
-    # "glossy_toon", whose alpha is the size and `rest` the smoothness; or microfacets,
-    # "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel factor 1, and the same with "_schlick" or "_dielectric" for
-    # its rise towards grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks, and
-    # "_broad_dip" and "_linear" for films; with "stretched_" before it they have two widths: `rest` is alpha across the
-    # tangent, and the three of the tangent
+    # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; "disney", "disney_retro",
+    # "disney_retro_square", "disney_entry", "disney_sheen"; one lobe of a Bsdf; "toon" and "glossy_toon", whose alpha
+    # is the size and `rest` the smoothness; or microfacets, "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel
+    # factor 1, and the same with "_schlick" or "_dielectric" for its rise towards grazing angles, "_dip", "_wide_dip"
+    # or "_narrow_dip" for what a metal's curve lacks, and "_broad_dip" and "_linear" for films; with "stretched_"
+    # before it they have two widths: `rest` is alpha across the tangent, and the three of the tangent
     kind: str | _core.Bsdf
     weight: Color
     alpha: Value | None = None  # roughness², of microfacets; along the tangent, if they have two
