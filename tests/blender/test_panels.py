@@ -147,19 +147,22 @@ def test_the_report_leads_to_its_places(studio: Any) -> None:
 
 
 def test_what_is_shown_of_direct_light_is_said(studio: Any) -> None:
-    """At no bounces the report begins with it, metal is named, and the tick is of these depths."""
+    """The report begins with few bounces, metal is named, and the tick is of these depths."""
     studio.simple_scene()
     context = {"scene": studio.scene, "region": SimpleNamespace(width=2000)}
     context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
     expected = {
         0: " Direct light only: Max Bounces is 0 As Cycles draws direct light",
-        1: " As Cycles draws it with 1 bounce",
+        1: " This file lets light bounce 3 times in Cycles As Cycles draws it with 1 bounce",
+        3: " As Cycles draws it with 3 bounces",
     }
+    studio.scene.cycles.max_bounces = 3
     for bounces, text in expected.items():
         studio.scene.shlight.max_bounces = bounces
         studio.render("SHLIGHT")
         assert drawn_by(report.report, **context).text == text
         assert ("Direct light only" in drawn_by(settings.sampling, **context).text) == (bounces == 0)
+        assert ("in Cycles" in drawn_by(settings.light, **context).text) == (bounces == 1)
     bpy.data.objects["Box"].data.materials[0] = studio.material("ShaderNodeBsdfGlossy", name="Chrome", Roughness=0.0)
     studio.render("SHLIGHT")
     assert "As Cycles draws it" in drawn_by(report.report, **context).text

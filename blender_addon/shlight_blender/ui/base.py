@@ -13,6 +13,7 @@ from ..running import ENGINE
 
 PIXELS_PER_LETTER = 7.0
 DIRECT_ONLY = "Direct light only: Max Bounces is 0"
+MORE_IN_CYCLES = "This file lets light bounce {} times in Cycles"
 # Tabs of the Properties editor by the part of panels' names, and what of the context a tab is about.
 TABS = {
     "RENDER": ("render", "scene"),
@@ -71,6 +72,15 @@ def panel(
         )
 
     return made
+
+
+def draw_depth(layout: Any, scene: Any, bounces: int) -> None:
+    """Says what a picture of so many bounces lacks of what the file asks Cycles for."""
+    asked = scene.cycles.max_bounces if hasattr(scene, "cycles") else 0
+    if bounces == 0:
+        layout.label(text=DIRECT_ONLY, icon="INFO")
+    elif bounces < asked:
+        layout.label(text=MORE_IN_CYCLES.format(asked), icon="INFO")
 
 
 def with_names_aside(layout: Any) -> Any:

@@ -11,7 +11,7 @@ import bpy
 from .. import record
 from ..names import name_of, with_name
 from ..report import Effect, Message
-from .base import DIRECT_ONLY, draw_text, panel
+from .base import draw_depth, draw_text, panel
 
 MOST_PLACES = 4
 ICONS = {Effect.DARK: "ERROR", Effect.LIGHT: "ERROR", Effect.THING: "ERROR"}
@@ -88,8 +88,8 @@ def report(layout: Any, context: Any) -> None:
         draw_text(layout, context, record.shown.scene_error, "ERROR")
     messages = [message for message in record.shown.report if message.effect < Effect.SLIGHT]
     bounces = record.shown.settings.get("max_bounces")
-    if bounces == 0:
-        layout.label(text=DIRECT_ONLY, icon="INFO")
+    if bounces is not None:
+        draw_depth(layout, context.scene, bounces)
     if not messages and not record.shown.scene_error and bounces is not None:
         layout.label(text=f"As Cycles draws {'it with ' * (bounces > 0)}{record.light_name(bounces)}", icon="CHECKMARK")
     for message in messages:

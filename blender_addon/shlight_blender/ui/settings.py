@@ -11,7 +11,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
 from ..compat import position_owner
-from .base import DIRECT_ONLY, panel
+from .base import DIRECT_ONLY, draw_depth, panel
 
 PRESETS = Path(__file__).with_name("presets")
 PRESET_SETTINGS = (
@@ -83,6 +83,7 @@ def sampling_viewport(layout: Any, context: Any) -> None:
 @panel("SHLIGHT_RENDER_PT_light", "Light Paths", closed=True)
 def light(layout: Any, context: Any) -> None:
     """Paths of light."""
+    draw_depth(layout, context.scene, context.scene.shlight.max_bounces)
     column = layout.column(align=True)
     _props(column, context.scene.shlight, "max_bounces", "glossy_bounces", "transmission_bounces")
     cycles = getattr(context.scene, "cycles", None)
