@@ -206,7 +206,7 @@ class RenderedViewport:
             self._error, self._shown = f"shlight: {error}", needed
             return
         if changed:
-            self._updated = f"{changes.parts()} in {1e3 * (time.perf_counter() - start):.0f} ms"
+            self._updated = f"{changes.parts()} read in {1e3 * (time.perf_counter() - start):.0f} ms"
             record.show_viewport(depsgraph.scene, self._exported)
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
             self._maker.start(Job(self._exported.scene, view.frame, settings, denoises, self._factors))

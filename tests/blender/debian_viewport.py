@@ -190,7 +190,7 @@ def steps():
         shown[-1]._updated = ""
         change()
         yield from settled()
-        found["updated"][name] = shown[-1]._updated.split(" in ")[0] if len(jobs) > count else None
+        found["updated"][name] = shown[-1]._updated.split(" read in ")[0] if len(jobs) > count else None
         found["differs"][name] = float(np.abs(pixels() - before).max())
     yield from compare_with_a_viewport_made_anew()
     yield from compare_with_final_render()
