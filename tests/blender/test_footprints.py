@@ -124,6 +124,30 @@ def test_noise_far_away(studio: Any, node: str, properties: dict[str, Any], inpu
     assert many <= noise / 100
 
 
+@pytest.mark.slow
+def test_marble_to_the_horizon(studio: Any) -> None:
+    """One ray of each pixel, lit by the sun and the sky, has a tenth of the error of Cycles' one."""
+    material = studio.material("ShaderNodeBsdfPrincipled", Roughness=0.4)
+    tree = material.node_tree
+    wave, ramp = tree.nodes.new("ShaderNodeTexWave"), tree.nodes.new("ShaderNodeValToRGB")
+    for name, number in {"Scale": 0.4, "Distortion": 6.0, "Detail": 4.0}.items():
+        wave.inputs[name].default_value = number
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.05, 0.06, 0.08, 1), (0.8, 0.77, 0.7, 1)
+    tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Position"], wave.inputs["Vector"])
+    tree.links.new(wave.outputs["Fac"], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    studio.plane(4000.0, material)
+    studio.lamp("SUN", 2.0, (0, 0, 3), rotation_euler=(0.7, 0.3, 0.0), angle=0.05)
+    studio.world((0.3, 0.4, 0.6))
+    studio.camera((0, 0, 1.6), (0, 10, 0.6))
+    studio.resolution(96, 64)
+    ours_at, cycles_at = renders(studio)
+    reference = cycles_at(4096)
+    single, noise = (rel_mse(picture, reference) for picture in (ours_at(1), cycles_at(1)))
+    print(f"one {single:.1e}, Cycles {noise:.1e}")
+    assert single <= noise / 10
+
+
 def test_a_ramp_of_a_picture_far_away(studio: Any) -> None:
     """Few of its texels are brighter than where the ramp begins."""
     material = studio.material("ShaderNodeEmission")
