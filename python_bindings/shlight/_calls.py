@@ -108,12 +108,17 @@ def _constant(written: ast.expr) -> Any:
     return float(text) if text in ("inf", "-inf") else ast.literal_eval(written)
 
 
+def _likeness(given: str, name: str) -> tuple[bool, float]:
+    """Orders the names that a misspelt one may stand for: a part of a name is nearer to it than to others."""
+    return given in name, difflib.SequenceMatcher(None, given, name).ratio()
+
+
 def _why(signature: inspect.Signature, given: tuple[Any, ...], named: Mapping[str, Any]) -> str:
     """What is wrong with a call; empty if its arguments are those of the signature."""
     for name in named:
         if name not in signature.parameters:
             others = sorted(set(signature.parameters) - {"self"} - set(named))
-            near = max(others, key=lambda other: difflib.SequenceMatcher(None, name, other).ratio(), default="")
+            near = max(others, key=lambda other: _likeness(name, other), default="")
             return f"unknown argument {name!r}; did you mean {near!r}?" if near else f"unknown argument {name!r}"
     try:
         signature.bind(*given, **named)

@@ -52,6 +52,9 @@ WRONG_CALLS: dict[str, Callable[[], Any]] = {
     "unknown argument 'samples'; did you mean 'max_samples'?": lambda: shlight.render(
         lit_floor(), 4, 4, samples=3, max_bounces=0
     ),
+    "unknown argument 'nois'; did you mean 'noise_threshold'?": lambda: shlight.render(
+        lit_floor(), 4, 4, nois=0.1, max_bounces=0
+    ),
     "unknown argument 'shadow'; did you mean 'shadows'?": lambda: shlight.Scene().add_sphere_light(
         [0, 0, 1], 0.1, (1, 1, 1), shadow=False
     ),
