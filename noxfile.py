@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Tests that take long, which `./dev test --all` runs: of the add-on with versions of Blender beside that of .venv, and
-of the core and the package with fuzz targets and sanitizers."""
+"""Tests that take long, which `./dev test --all` runs: of the add-on with versions of Blender beside that of .venv, of
+the core and the package with fuzz targets and sanitizers, and of the core for Arm."""
 
 from __future__ import annotations
 
@@ -120,3 +120,10 @@ def sanitize_python(session: nox.Session, folder: Path) -> None:
     left_out = [f"--ignore=tests/python/test_{name}.py" for name in NOT_SANITIZED]
     left_out += ["-k", "not test_an_interrupt_ends_a_long_call"]  # it measures time too
     session.run("python", "-m", "pytest", "-q", "-m", "not slow", "tests/python", *left_out, *session.posargs, env=env)
+
+
+@nox.session(python="3.11", reuse_venv=True)
+def arm(session: nox.Session) -> None:
+    """The core's tests for 64-bit Arm, whose kernels are of NEON, by QEMU."""
+    build(session, "build/arm", ["--preset", "arm"], "shlight_tests")
+    session.run("ctest", "--preset", "arm", *session.posargs, external=True)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
 # The instruction sets that kernels are compiled for: SHLIGHT_KERNEL_TARGETS, by Highway's names and best first, and
-# SHLIGHT_KERNEL_DEFINITIONS, which tell Highway. Each takes its own time to compile.
+# SHLIGHT_KERNEL_DEFINITIONS, which tell Highway. Each takes its own time to compile. SHLIGHT_KERNEL_OPTIONS: the
+# compiler's options for all sources of the core.
 include(CheckCXXSourceRuns)
 
 option(SHLIGHT_ALL_TARGETS "Compile kernels for AVX-512, AVX2 and SSE4; OFF: for SSE4 and the best of this machine" ON)
@@ -29,6 +30,10 @@ else()
   # On ARM NEON; elsewhere plain C++ in place of vectors, which Highway distrusts with GCC before 12.3 for a fault in
   # products of short integers: there are none here.
   set(SHLIGHT_KERNEL_TARGETS)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+    # Highway's NEON has instructions for AES. GCC inlines none of its vectors into the members of std::array without them.
+    set(SHLIGHT_KERNEL_OPTIONS -march=armv8-a+crypto)
+  endif()
   set(SHLIGHT_KERNEL_DEFINITIONS HWY_BROKEN_EMU128=0
     "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
 endif()

@@ -2,18 +2,22 @@
 #
 # Writes to OUTPUT what ctest shall run of PROGRAM: one test for each suite, whatever its types and parameters, without
 # the tests that match LONGEST, and the suites whose names match ACCURACY once more for each of TARGETS, without the tests
-# that match LEFT_OUT.
-execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+# that match LEFT_OUT. EMULATOR runs PROGRAM, if it is not empty.
+execute_process(COMMAND ${EMULATOR} ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n[^ \n]+\\." suites "\n${listed}")
 list(TRANSFORM suites STRIP)
 list(TRANSFORM suites REPLACE "(/[0-9]+)?\\.$" "")
 list(REMOVE_DUPLICATES suites)
 
 set(tests)
+set(seconds 600)
+if(EMULATOR)
+  set(seconds 6000)
+endif()
 function(add_suite name suite left_out properties)
   set(filter "${suite}.*:${suite}/*-${left_out}")
-  string(APPEND tests "add_test([[${name}]] [[${PROGRAM}]] --gtest_brief=1 [[--gtest_filter=${filter}]])\n"
-    "set_tests_properties([[${name}]] PROPERTIES TIMEOUT 600 ${properties})\n")
+  string(APPEND tests "add_test([[${name}]] ${EMULATOR} [[${PROGRAM}]] --gtest_brief=1 [[--gtest_filter=${filter}]])\n"
+    "set_tests_properties([[${name}]] PROPERTIES TIMEOUT ${seconds} ${properties})\n")
   set(tests "${tests}" PARENT_SCOPE)
 endfunction()
 

@@ -81,14 +81,15 @@ def _remark_film_inside(inputs: NodeInputs, thin: _ThinFilm) -> None:
 
 
 def _read_layered(inputs: NodeInputs) -> Shader:
-    if inputs.number("Metallic").constant != 0.0:
+    metallic = inputs.number("Metallic").constant
+    if metallic != 0.0:
         inputs.remark_nothing_reflected()
     thin = _thin_film(inputs)
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_glass("'Transmission Weight'")
         _remark_film_inside(inputs, thin)
     index = inputs.number("IOR").constant
-    if index is not None and index < 1.0:
+    if index is not None and index < 1.0 and metallic != 1.0:
         inputs.remark("an 'IOR' below 1 reflects as its reciprocal does")
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}

@@ -11,7 +11,11 @@
 
 namespace shlight::truth {
 
+#if __LDBL_MANT_DIG__ == 113  // on Arm, where GCC 12 has no other type of 113 bits
+using quad = long double;
+#else
 __extension__ typedef __float128 quad;  // NOLINT(modernize-use-using): an alias-declaration takes no __extension__
+#endif
 
 }  // namespace shlight::truth
 
