@@ -62,6 +62,8 @@ PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 PRINCIPLED_UNSUPPORTED: dict[str, float] = {} if IS_BLENDER_4 else {"Clearcoat": 0.0}
 # Cycles' thin films by name of `nodes.principled`.
 THIN_FILM_MODEL: Literal["spectral", "gaussians"] = "spectral" if VERSION >= (5, 0, 0) else "gaussians"
+# Fresnel's curve of metals by name of `nodes.conductor`.
+FRESNEL_MODEL: Literal["exact", "large_index"] = "exact" if VERSION >= (5, 0, 0) else "large_index"
 # Methods of subsurface scattering by Blender's names.
 SUBSURFACE_METHODS: dict[str, Literal["burley", "random_walk", "random_walk_skin"]] = (
     {"BURLEY": "burley", "RANDOM_WALK": "random_walk", "RANDOM_WALK_SKIN": "random_walk_skin"}

@@ -239,21 +239,30 @@ def test_the_parts_of_disneys_diffuse_reflection() -> None:
         )
 
 
-@pytest.mark.parametrize(("n", "k"), [(0.18, 3.42), (1.37, 1.77), (2.76, 3.87), (1.1, 6.6), (0.0, 1.0)])
-def test_a_conductors_curve_is_fresnels(n: float, k: float) -> None:
-    """Against the equations with complex cosines, which hold for any n and k; the usual form leaves out the bending."""
+@pytest.mark.parametrize(
+    ("n", "k", "kink"),
+    [(0.18, 3.42, 0), (1.37, 1.77, 0), (2.76, 3.87, 0), (1.1, 6.6, 0), (0.0, 1.0, 0), (0.5, 0.5, 0.04), (0, 0, 0)],
+)
+def test_a_conductors_curve_is_fresnels(n: float, k: float, kink: float) -> None:
+    """Against the equations with complex cosines; the form for large n and k leaves out the bending."""
     cosines = np.linspace(0.05, 1, 96)
-    index = complex(n, k)
+    index = complex(n, k) or 1e-9j
     inside = np.sqrt(1 - (1 - cosines**2) / index**2 + 0j)
     s = (cosines - index * inside) / (cosines + index * inside)
     p = (index * cosines - inside) / (index * cosines + inside)
-    exact = (abs(s) ** 2 + abs(p) ** 2) / 2
-    near = [metals.reflectance(float(c), color(n), color(k)).constant for c in cosines]
-    assert np.abs(np.array(near)[:, 0] - exact).max() <= (0.03 if n * n + k * k > 4 else 1.0)
-    known = [metals.reflectance(float(c), color(n), color(k)).constant for c in metals.COSINES]
-    shares = metals.shares_of_known() @ np.array(known)[:, 0]
-    made = sum(share * fresnel(factor, cosines) for share, factor in zip(shares, metals.FACTORS, strict=True))
-    assert np.abs(made - np.array(near)[:, 0]).max() <= 3e-3
+    truth = (abs(s) ** 2 + abs(p) ** 2) / 2
+
+    def curve(model: Any, at: Any) -> Any:
+        return np.array([model(float(c), color(n), color(k)).constant for c in at])[:, 0]
+
+    exact = curve(metals.exact_reflectance, cosines)
+    assert np.abs(exact - truth).max() <= 1e-6
+    near = curve(metals.large_index_reflectance, cosines)
+    assert np.abs(near - truth).max() <= (0.03 if n * n + k * k > 4 else 1.0)
+    for model, own in ((metals.exact_reflectance, exact), (metals.large_index_reflectance, near)):
+        shares = metals.shares_of_known() @ curve(model, metals.COSINES)
+        made = sum(share * fresnel(factor, cosines) for share, factor in zip(shares, metals.FACTORS, strict=True))
+        assert np.abs(made - own).max() <= 3e-3 + kink
 
 
 def test_metals_reflect_no_more_than_they_get() -> None:

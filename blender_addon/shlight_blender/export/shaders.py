@@ -13,6 +13,7 @@ from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
 from ..compat import (
+    FRESNEL_MODEL,
     PRINCIPLED_IS_LAYERED,
     PRINCIPLED_UNSUPPORTED,
     SUBSURFACE_ENTRY_IS_DIFFUSE,
@@ -260,10 +261,13 @@ def _glossy(inputs: NodeInputs) -> Shader:
 def _metallic(inputs: NodeInputs) -> Shader:
     inputs.remark_nothing_reflected()
     roughness, rest, stretch = inputs.number("Roughness"), _microfacets(inputs), _anisotropy(inputs)
-    by_color = inputs.node.fresnel_type == "F82"
-    made = nodes.metallic if by_color else nodes.conductor
-    facing, edge = ("Base Color", "Edge Tint") if by_color else ("IOR", "Extinction")
-    return made(inputs.color(facing), inputs.color(edge), roughness, **rest, **stretch, **_thin_film(inputs))
+    thin = _thin_film(inputs)
+    if inputs.node.fresnel_type == "F82":
+        return nodes.metallic(
+            inputs.color("Base Color"), inputs.color("Edge Tint"), roughness, **rest, **stretch, **thin
+        )
+    n, k = inputs.color("IOR"), inputs.color("Extinction")
+    return nodes.conductor(n, k, roughness, fresnel_model=FRESNEL_MODEL, **rest, **stretch, **thin)
 
 
 def _glass(inputs: NodeInputs) -> Shader:

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shlight._arrays import checked_flag
+from shlight._arrays import checked_flag, checked_name
 from shlight.nodes import films
 from shlight.nodes.films import film
 from shlight.nodes.inputs import normal, towards_viewer
@@ -27,13 +28,16 @@ from shlight.nodes.principled import (
     sum_of_lobes,
 )
 from shlight.nodes.shader import Shader
-from shlight.nodes.values import Color, Number, Varying, Vector, clamp, color, dot, maximum, number, vector
+from shlight.nodes.values import Color, Number, Value, Varying, Vector, clamp, color, dot, maximum, number, sqrt, vector
+
+FresnelModel: TypeAlias = Literal["exact", "large_index"]
 
 # Cosines at which a metal's Fresnel curve is known, and how much each counts.
 COSINES = np.array([1.0, 0.85, 0.65, 0.45, 0.3, 0.2, 0.1, 0.04])
 COUNTS = np.array([3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.77, 0.49])
 # Shapes of the core whose Fresnel factors these are: 1, (1-c)⁵ and c (1-c)ⁿ with n = 6, 3, 12.
 FACTORS = ("", "_schlick", "_dip", "_wide_dip", "_narrow_dip")
+TINY = 1e-30  # beside squares of cosines
 
 
 def metallic(
@@ -79,14 +83,19 @@ def conductor(
     tangent: Vector | None = None,
     thin_film_thickness: Number = 0.0,
     thin_film_ior: Number = 1.33,
+    fresnel_model: FresnelModel = "exact",
     at: Vector | None = None,
 ) -> Shader:
     """Blender's Metallic BSDF by the index of refraction n + ik of each colour: Fresnel's curve for a conductor.
 
-    The curve is a sum of five that have lobes; of common metals it is off by 1e-3, and by 4e-3 of the worst n and k.
+    The curve is a sum of five that have lobes; of common metals it is off by 1e-3, and by 4e-3 of the worst n and k,
+    but where n² + k² is below 1: there light is reflected totally beyond an angle, and the curve has a kink.
     ior, extinction: n and k, at least 0; several_bounces: Multiscatter GGX, with the mean of the curve that Cycles
-    estimates; anisotropy and the rest: as of `metallic`. Raises ValueError naming an argument that is not finite.
+    estimates; fresnel_model: "exact", as since Blender 5.0, or before that "large_index", which holds for n² + k² much
+    larger than 1; anisotropy and the rest: as of `metallic`. Raises ValueError naming an argument that is not finite.
     """
+    checked_name("fresnel_model", fresnel_model, get_args(FresnelModel))
+    reflectance = exact_reflectance if fresnel_model == "exact" else large_index_reflectance
     several = _only_of_ggx(several_bounces, distribution)
     n, k = (
         Color(*(maximum(c, 0.0) for c in color(of, name))) for of, name in ((ior, "ior"), (extinction, "extinction"))
@@ -115,7 +124,7 @@ def conductor(
     return Shader(stretched(lobes, stretch))
 
 
-def reflectance(cosine: float, n: Color, k: Color) -> Color:
+def large_index_reflectance(cosine: float, n: Color, k: Color) -> Color:
     """The share of light that a conductor reflects, by Fresnel's equations for n² + k² much larger than 1."""
     square = n * n + k * k
 
@@ -124,6 +133,25 @@ def reflectance(cosine: float, n: Color, k: Color) -> Color:
         return (far + near - between) / (far + near + between)
 
     return color((part(square * (cosine * cosine), vector(1.0)) + part(square, vector(cosine * cosine))) * 0.5)
+
+
+def exact_reflectance(cosine: float, n: Color, k: Color) -> Color:
+    """The same for any n and k (Born & Wolf, "Principles of Optics", 14.4.1); refracted light has the cosine u + iv,
+    times n + ik."""
+    c2, s2 = cosine * cosine, 1.0 - cosine * cosine
+
+    def of_channel(n: Value, k: Value) -> Value:
+        real, imaginary = n * n - k * k - s2, n * k * 2.0
+        size = sqrt(real * real + imaginary * imaginary)
+        u, v2 = sqrt(maximum((size + real) * 0.5, 0.0)), maximum((size - real) * 0.5, 0.0)
+
+        def quotient(product: Value, rest: Value) -> Value:
+            return (rest - product + TINY) / (rest + product + TINY)
+
+        s = quotient(u * (2.0 * cosine), u * u + v2 + c2)
+        return s * (1.0 + quotient(u * (2.0 * cosine * s2), (u * u + v2) * c2 + s2 * s2)) * 0.5
+
+    return Color(*(of_channel(*of) for of in zip(n, k, strict=True)))
 
 
 @lru_cache(maxsize=1)
