@@ -77,7 +77,7 @@ CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5
 # A Magic Texture brings coordinates into one turn after it has scaled them, or before.
 MAGIC_WRAPS_SCALED = VERSION >= (5, 2, 0)
 # An IES Texture interpolates at the edges of its table with the values there beyond them, or with 0.
-IES_KEEPS_EDGES = VERSION >= (5, 1, 0)
+IES_KEEPS_EDGES = VERSION >= (5, 0, 1)
 # Faces without material have a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8.
 DEFAULT_IS_PRINCIPLED = VERSION >= (5, 0, 0)
 # An object's own empty slot is without material, or has that of the object's data.
