@@ -141,7 +141,7 @@ TEST(FaceSum, IsTheSumOverAllFacesWithinItsTolerance) {
                 squares += error * error;
                 ++count;
             }
-            // The errors of parts are estimates: in ten seeds their mean square came to 1.37 tolerances.
+            // The errors of parts are estimates: the root of their mean square came to 1.37 tolerances in ten seeds.
             EXPECT_LE(std::sqrt(squares / count), 1.5 * tolerance) << "emitter " << e;
         }
     }
