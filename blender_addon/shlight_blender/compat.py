@@ -153,6 +153,12 @@ def material_owner(material: Any, name: str) -> Any:
     return next((owner for owner in owners if hasattr(owner, name)), None)
 
 
+def corrects_bumps(material: Any) -> bool:
+    """Whether Cycles softens the shadows of a material's bumps as `nodes.lambert` does."""
+    owner = material_owner(material, "use_bump_map_correction")
+    return VERSION >= (4, 5, 0) and (owner is None or bool(owner.use_bump_map_correction))
+
+
 def has_own_terminator(shown: Any) -> bool:
     """Whether an object has Shadow Terminator offsets that are not Cycles' own."""
     return hasattr(shown, "shadow_terminator_geometry_offset")

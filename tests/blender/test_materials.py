@@ -231,6 +231,23 @@ def test_unsupported_shaders_are_named(studio: Any, shader: str, inputs: dict[st
     assert np.isfinite(studio.render("SHLIGHT")).all()
 
 
+def test_shadows_of_bumps_that_cycles_softens_otherwise_are_named(studio: Any) -> None:
+    material = studio.material()
+    tree = material.node_tree
+    bump = tree.nodes.new("ShaderNodeBump")
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs[0], bump.inputs["Height"])
+    tree.links.new(bump.outputs["Normal"], tree.nodes["Diffuse BSDF"].inputs["Normal"])
+    studio.area()
+    studio.camera()
+    studio.plane(material=material)
+    named = "diffuse bumps shadow themselves"
+    assert any(named in line for line in studio.messages(most=9)) == (bpy.app.version < (4, 5, 0))
+    if hasattr(material.cycles, "use_bump_map_correction"):
+        material.cycles.use_bump_map_correction = False
+        material.update_tag()
+        assert any(named in line for line in studio.messages(most=9))
+
+
 def test_light_of_the_world_that_transparent_shadows_stop_is_named(studio: Any) -> None:
     studio.camera()
     background, tree = studio.world(), studio.scene.world.node_tree

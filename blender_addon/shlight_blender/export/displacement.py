@@ -105,6 +105,7 @@ def _bent(shader: Shader, socket: Any, offset: Vector, reader: TreeReader, *, as
         height, scale = _height(inputs), dot(_along(inputs), nodes.normal())
     if height.constant is not None:
         return shader
+    inputs.remark_bumps()
     width = DISPLACEMENT_FILTER_WIDTH
     if not as_undisplaced:
         return shader.with_normal(nodes.bump(height, distance=scale, filter_width=width))

@@ -304,6 +304,7 @@ def _light_falloff(inputs: NodeInputs) -> Value:
 
 
 def _normal_map(inputs: NodeInputs) -> Vector:
+    inputs.remark_bumps()
     node = inputs.node
     space = {"TANGENT": "tangent", "OBJECT": "object", "BLENDER_OBJECT": "object"}.get(node.space, "world")
     color: Vector = inputs.color("Color")
@@ -319,6 +320,7 @@ def _bump(inputs: NodeInputs) -> Vector:
     height, strength, distance = (inputs.number(name) for name in ("Height", "Strength", "Distance"))
     if not inputs.is_linked("Height"):
         return nodes.normal() if at is None else at
+    inputs.remark_bumps()
     return nodes.bump(
         height, strength, distance, at=at, invert=inputs.node.invert, filter_width=filter_width(inputs.node)
     )

@@ -20,6 +20,7 @@ from shlight.nodes import Color, Shader, Value, Vector
 from shlight.nodes.values import Varying, color, maximum, number, vector
 
 from ..catchers import Part
+from ..compat import corrects_bumps
 from ..light_mix import Factors
 from ..names import name_of
 from ..passes import PassWishes
@@ -199,6 +200,11 @@ class NodeInputs:
         """Reports metal in a picture of direct light."""
         if not self.reader.surroundings.light_bounces:
             self.remark("it reflects lamps and the world, and no surface, while Max Bounces is 0", Effect.THING)
+
+    def remark_bumps(self) -> None:
+        """Reports normals that are bent where Cycles softens the shadows of bumps in another way, or not at all."""
+        if not corrects_bumps(self.reader.owner):
+            self.remark("diffuse bumps shadow themselves as in Blender 4.5 with Bump Map Correction")
 
     def ignore_unless(self, name: str, neutral: float) -> None:
         """Reports an input that is not supported, unless it has the value at which it does nothing."""

@@ -65,7 +65,7 @@ def _preview_panel(owner: str) -> Any:
 def material_settings(layout: Any, context: Any) -> None:
     """The settings of a material beside its nodes."""
     layout.prop(context.material, "pass_index")
-    for name in ("displacement_method", "use_transparent_shadow"):
+    for name in ("displacement_method", "use_transparent_shadow", "use_bump_map_correction"):
         if (owner := material_owner(context.material, name)) is not None:
             layout.prop(owner, name)
 
