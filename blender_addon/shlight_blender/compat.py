@@ -64,6 +64,12 @@ PRINCIPLED_UNSUPPORTED: dict[str, float] = {} if IS_BLENDER_4 else {"Clearcoat":
 THIN_FILM_MODEL: Literal["spectral", "gaussians"] = "spectral" if VERSION >= (5, 0, 0) else "gaussians"
 # Fresnel's curve of metals by name of `nodes.conductor`.
 FRESNEL_MODEL: Literal["exact", "large_index"] = "exact" if VERSION >= (5, 0, 0) else "large_index"
+# Rough diffuse surfaces return the light that the first bounce loses.
+DIFFUSE_KEEPS_ENERGY = VERSION >= (4, 3, 0)
+# Diffuse normals, too, are turned until the mirror image of the viewer is above the surface.
+TURNS_DIFFUSE_NORMALS = not IS_BLENDER_4
+# The shadow that bumps throw on themselves by name of `Shader.with_bump_shadow`.
+BUMP_SHADOW: Literal["ggx", "cubic"] = "ggx" if VERSION >= (4, 5, 0) else "cubic"
 # Methods of subsurface scattering by Blender's names.
 SUBSURFACE_METHODS: dict[str, Literal["burley", "random_walk", "random_walk_skin"]] = (
     {"BURLEY": "burley", "RANDOM_WALK": "random_walk", "RANDOM_WALK_SKIN": "random_walk_skin"}
@@ -154,9 +160,9 @@ def material_owner(material: Any, name: str) -> Any:
 
 
 def corrects_bumps(material: Any) -> bool:
-    """Whether Cycles softens the shadows of a material's bumps as `nodes.lambert` does."""
+    """Whether Cycles softens the shadows of a material's bumps."""
     owner = material_owner(material, "use_bump_map_correction")
-    return VERSION >= (4, 5, 0) and (owner is None or bool(owner.use_bump_map_correction))
+    return owner is None or bool(owner.use_bump_map_correction)
 
 
 def has_own_terminator(shown: Any) -> bool:

@@ -167,10 +167,11 @@ LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "lambert" || kind == "translucent") {
         return LambertShape{};
     }
-    static const std::array<std::pair<std::string_view, LobeShape>, 8> kDiffuse = {
+    static const std::array<std::pair<std::string_view, LobeShape>, 9> kDiffuse = {
         {{"oren_nayar", DiffuseShape{Diffuse::oren_nayar}},
          {"oren_nayar_loss", DiffuseShape{Diffuse::oren_nayar_loss}},
-         {"bumped_lambert", DiffuseShape{Diffuse::bumped}},
+         {"bumped_lambert_ggx", DiffuseShape{Diffuse::bumped_ggx}},
+         {"bumped_lambert_cubic", DiffuseShape{Diffuse::bumped_cubic}},
          {"disney", kDisneyDiffuse},
          {"disney_retro", kDisneyRetro},
          {"disney_retro_square", kDisneyRetroSquare},

@@ -228,8 +228,6 @@ def test_few_rays_see_normals_as_many_do(studio: Any) -> None:
 )
 def test_bumps_as_fine_as_a_pixel(studio: Any, width: float, mirrored: bool) -> None:
     """A ball, or its picture in a mirror: where heights are compared decides what it looks like."""
-    if bpy.app.version < (4, 5, 0):
-        pytest.skip("in this version of Blender bumps shadow themselves otherwise")
     material = studio.material("ShaderNodeBsdfPrincipled", Roughness=1.0 if mirrored else 0.3)
     tree = material.node_tree
     noise, bump = tree.nodes.new("ShaderNodeTexNoise"), tree.nodes.new("ShaderNodeBump")

@@ -75,6 +75,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "metal_brushed": (METAL, {"Base_Color": GOLD, "Edge_Tint": (0.9, 0.6, 0.5), "Anisotropy": 0.7, "Rotation": 0.2}),
     "conductor_brushed": (METAL, {"fresnel_type": "PHYSICAL_CONDUCTOR", "Anisotropy": 1.0, "distribution": "BECKMANN"}),
     "glass_beckmann": ("ShaderNodeBsdfGlass", {"Roughness": 0.5, "distribution": "BECKMANN"}),
+    **{f"rough_{r:g}": ("ShaderNodeBsdfDiffuse", {"Color": GOLD, "Roughness": r}) for r in (0.5, 1.0)},
     **{f"fibres_{r:g}": (SHEEN, {"Roughness": r, "distribution": "MICROFIBER"}) for r in (0.5, 1.0)},
     **{f"velvet_{r:g}": (SHEEN, {"Roughness": r, "distribution": "ASHIKHMIN"}) for r in (0.3, 0.5, 1.0)},
     **{
@@ -114,7 +115,10 @@ FILMS: dict[str, tuple[str, dict[str, Any]]] = {
 }
 LIGHTS = ("point of light", "area", "sphere", "sun", "sky")
 # Lobes whose reflection of lights with an extent takes little time; tests/python/test_lobes.py has it for each lobe.
-QUICK = ("metal_1", "sheen_1_1", "multi_ggx", "half_metal", "conductor_edges", "brushed_0.5_0", "fibres_1", "velvet_1")
+QUICK = (
+    "metal_1", "rough_1", "sheen_1_1", "multi_ggx", "half_metal", "conductor_edges", "brushed_0.5_0", "fibres_1",
+    "velvet_1",
+)  # fmt: skip
 NARROW_RIMS = ("fibres_0.5", "velvet_0.3", "velvet_0.5")  # which are bright along the outline alone
 QUICK_FILMS = ("film_350_0.1", "film_350_0.6", "film_1000_1", "film_strong")
 QUICK_TOONS = ("toon_diffuse_0.5_0", "toon_diffuse_0.5_1", "toon_glossy_0.5_0", "toon_glossy_0.9_1")

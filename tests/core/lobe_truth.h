@@ -23,7 +23,8 @@ inline Vec3d view_direction(double cos_theta_o) {
 inline std::vector<LobeShape> rough_diffuse_shapes() {
     return {DiffuseShape{Diffuse::oren_nayar},
             DiffuseShape{Diffuse::oren_nayar_loss},
-            DiffuseShape{Diffuse::bumped},
+            DiffuseShape{Diffuse::bumped_ggx},
+            DiffuseShape{Diffuse::bumped_cubic},
             kDisneyDiffuse,
             kDisneyRetro,
             kDisneyRetroSquare,

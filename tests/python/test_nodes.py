@@ -97,6 +97,34 @@ def test_another_normal_counts_in_lobes_and_expressions() -> None:
     np.testing.assert_array_equal(floor(own, "polygon"), floor(shader(tilted, tilted), "polygon"))
 
 
+@pytest.mark.parametrize("rule", ["ggx", "cubic"])
+@pytest.mark.parametrize("degrees", [20, -15, -35, -60])
+def test_bumps_shadow_themselves(rule: Any, degrees: float) -> None:
+    """A small light, whose cosine counts at the bump's normal and not at the smooth one."""
+    bump, light = (np.array([np.sin(np.radians(a)), 0, np.cos(np.radians(a))]) for a in (degrees, 50))
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=float)
+
+    def pixel(bsdf: Any) -> float:
+        scene = shlight.Scene()
+        scene.add_mesh(square, [[0, 1, 2], [0, 2, 3]], bsdf=bsdf)
+        scene.add_sphere_light(100 * light, 0.05, (1e6, 1e6, 1e6))
+        pose = np.eye(4)
+        pose[2, 3] = 5
+        scene.set_camera(pose, 0.1)
+        return float(shlight.render(scene, 1, 1, pixel_samples=1, max_bounces=0)[0, 0, 0])
+
+    own = nodes.lambert(0.8, nodes.Vector(*map(nodes.values.number, bump))).with_bump_shadow(rule)
+    smooth, leaning = light[2], bump @ light
+    if rule == "ggx":
+        alpha2 = min(np.tan(np.radians(degrees)) ** 2 / 8, 1)
+        share = 2 / (1 + np.sqrt(1 + alpha2 * (1 / smooth**2 - 1)))
+    else:
+        g = np.clip(smooth / (leaning * bump[2]), 0, 1)
+        share = g + g**2 - g**3
+    expected = max(leaning, 0) * share / smooth * pixel(nodes.lambert(0.8))
+    assert abs(pixel(own) - expected) <= 1e-3 * expected
+
+
 def test_light_that_passes_through() -> None:
     # A lamp above a pane that passes a quarter of red and all of green, over a floor.
     square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=float) * 3

@@ -17,7 +17,7 @@ from shlight.nodes import Color, Shader
 from shlight.nodes.rays import Ray, color_on_ray
 from shlight.nodes.shader import BLACK
 
-from ..compat import DEFAULT_IS_PRINCIPLED, aov_name, lets_light_through, uses_nodes
+from ..compat import BUMP_SHADOW, DEFAULT_IS_PRINCIPLED, aov_name, lets_light_through, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .displacement import Displacement, displaced
@@ -171,7 +171,7 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
         report.add(place, "there is no Material Output node; drawn black", Effect.THING)
         return Surface()
     reader = TreeReader(material, place, report, surroundings, NODES)
-    surface = filled(reader.shader(output.inputs["Surface"]), output, reader)
+    surface = filled(reader.shader(output.inputs["Surface"]).with_bump_shadow(BUMP_SHADOW), output, reader)
     shader = with_aovs(surface, reader, material.node_tree)
     shader, displacement = displaced(shader, material, output.inputs["Displacement"], reader)
     if not lets_light_through(material):

@@ -20,7 +20,7 @@ from shlight.nodes import Color, Shader, Value, Vector
 from shlight.nodes.values import Varying, color, maximum, number, vector
 
 from ..catchers import Part
-from ..compat import corrects_bumps
+from ..compat import TURNS_DIFFUSE_NORMALS, corrects_bumps
 from ..light_mix import Factors
 from ..names import name_of
 from ..passes import PassWishes
@@ -165,6 +165,11 @@ class NodeInputs:
         """An input as a vector if another node makes it, else None: what the node itself takes in its place."""
         return self.vector(name) if self.is_linked(name) else None
 
+    def diffuse_normal(self) -> Vector | None:
+        """The normal of a diffuse lobe, None if no node makes it."""
+        normal = self.linked_vector("Normal")
+        return nodes.reflecting_normal(normal) if normal is not None and TURNS_DIFFUSE_NORMALS else normal
+
     def vector_or(self, name: str | int, default: Vector) -> Vector:
         """An input as a vector if another node makes it, else the default."""
         return self.vector(name) if self.is_linked(name) else default
@@ -202,9 +207,13 @@ class NodeInputs:
             self.remark("it reflects lamps and the world, and no surface, while Max Bounces is 0", Effect.THING)
 
     def remark_bumps(self) -> None:
-        """Reports normals that are bent where Cycles softens the shadows of bumps in another way, or not at all."""
+        """Reports normals that are bent where Cycles does not soften the shadows of bumps."""
         if not corrects_bumps(self.reader.owner):
-            self.remark("diffuse bumps shadow themselves as in Blender 4.5 with Bump Map Correction")
+            self.remark("diffuse bumps shadow themselves as with Bump Map Correction")
+
+    def remark_rough_bumps(self) -> None:
+        """Reports a rough diffuse surface with bumps."""
+        self.remark("its bumps shadow themselves as those of a surface without diffuse roughness", Effect.SLIGHT)
 
     def ignore_unless(self, name: str, neutral: float) -> None:
         """Reports an input that is not supported, unless it has the value at which it does nothing."""

@@ -13,6 +13,7 @@ from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
 from ..compat import (
+    DIFFUSE_KEEPS_ENERGY,
     FRESNEL_MODEL,
     PRINCIPLED_IS_LAYERED,
     PRINCIPLED_UNSUPPORTED,
@@ -93,6 +94,8 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     if index is not None and index < 1.0 and metallic != 1.0:
         inputs.remark("an 'IOR' below 1 reflects as its reciprocal does")
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
+    if inputs.is_linked("Normal") and given["Diffuse Roughness"].constant != 0.0:
+        inputs.remark_rough_bumps()
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
         inputs.color("Base Color"),
@@ -120,14 +123,14 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     specular = maximum(inputs.number("Specular"), 0.0)
     tint = inputs.number("Specular Tint")
     alpha = clamp(inputs.number("Alpha"))
-    at = inputs.linked_vector("Normal")
+    at = inputs.diffuse_normal()
     glow = nodes.emission(inputs.color("Emission") * inputs.number("Emission Strength"))
     transmission = clamp(inputs.number("Transmission"))
     if transmission.constant != 0.0:
         inputs.remark_glass("'Transmission'")
     through = transmission * (1.0 - metallic)
     diffuse = (1.0 - metallic) * (1.0 - transmission)
-    surface = _diffuse_of_sum(inputs, base, roughness) * diffuse
+    surface = _diffuse_of_sum(inputs, base, roughness, at) * diffuse
     luminance = sum((c * w for c, w in zip(base, TINT_LUMINANCE, strict=True)), start=number(0.0))
     hue = Color(*(nodes.values.select(luminance > 0.0, c / luminance, 1.0) for c in base))
     sheen, sheen_tint = maximum(inputs.number("Sheen"), 0.0), clamp(inputs.number("Sheen Tint"))
@@ -136,7 +139,7 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     f0 = (hue * tint + (1.0 - tint)) * (0.08 * specular) * (1.0 - metallic) + base * metallic
     f0 = Color(*(clamp(c) for c in f0))
     ior = 2.0 / (1.0 - sqrt(nodes.values.minimum(0.08 * specular, 0.99))) - 1.0
-    n = nodes.reflecting_normal(nodes.normal() if at is None else at)
+    n = nodes.reflecting_normal(nodes.normal()) if at is None else at
     width = roughness * roughness
     if not (specular.constant == 0.0 and metallic.constant == 0.0):
         share, turns = inputs.number("Anisotropic"), inputs.number("Anisotropic Rotation")
@@ -148,9 +151,9 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha
 
 
-def _diffuse_of_sum(inputs: NodeInputs, base: Color, roughness: Value) -> Shader:
+def _diffuse_of_sum(inputs: NodeInputs, base: Color, roughness: Value, at: Vector | None) -> Shader:
     """The diffuse part of Blender 3.4's node, of which all comes from below the surface where 'Subsurface' is not 0."""
-    share, at = inputs.number("Subsurface"), inputs.linked_vector("Normal")
+    share = inputs.number("Subsurface")
     if share.constant == 0.0:
         return nodes.disney_diffuse(base, roughness, at=at)
     return nodes.disney_subsurface(
@@ -209,9 +212,10 @@ def _toon(inputs: NodeInputs) -> Shader:
 
 
 def _diffuse(inputs: NodeInputs) -> Shader:
-    return nodes.oren_nayar(
-        positive(inputs.color("Color")), inputs.number("Roughness"), at=inputs.linked_vector("Normal")
-    )
+    roughness, at = inputs.number("Roughness"), inputs.diffuse_normal()
+    if at is not None and roughness.constant != 0.0:
+        inputs.remark_rough_bumps()
+    return nodes.oren_nayar(positive(inputs.color("Color")), roughness, several_bounces=DIFFUSE_KEEPS_ENERGY, at=at)
 
 
 class _Microfacets(TypedDict):

@@ -2,8 +2,9 @@
 //
 // Shapes of lobes: scalar, isotropic f·cos, a BRDF times the cosine at the light, without colour.
 //
-// A shape is a struct with the members below; the functions at the end visit the variant, and no other code depends on
-// the type of shape. lobes/lobe_lanes-inl.h has f·cos and density in lanes.
+// A shape is a struct with members as DiffuseShape has, and those that rays are drawn from with members as LambertShape
+// has; the functions at the end visit the variant, and no other code depends on the type of shape.
+// lobes/lobe_lanes-inl.h has f·cos and density in lanes.
 // All vectors are in the shading frame; wi, wo: unit vectors towards light and view.
 #pragma once
 
@@ -42,9 +43,12 @@ enum class Diffuse {
     /// cosθ_i (π/2 - 2/3 - G(cosθ_i)): the energy that this model's first bounce loses and further bounces return.
     oren_nayar_loss,
     /// Lambert's lobe of a bumped normal, with ω_o the smooth normal, times the share that the smooth surface does not
-    /// shadow (Estevez, Lecocq & Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
-    /// Problem").
-    bumped
+    /// shadow: G₁ of GGX (Estevez, Lecocq & Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump
+    /// Terminator Problem").
+    bumped_ggx,
+    /// The same with the share -g³ + g² + g where g = ω_i·ω_o / (cosθ_i cosθ_o) is below 1 (Chiang, Li & Burley 2019,
+    /// "Taming the Shadow Terminator").
+    bumped_cubic
 };
 
 struct DiffuseShape {
@@ -54,9 +58,6 @@ struct DiffuseShape {
     double width() const { return 1; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
-    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
-    double density(const Vec3d& wo, const Vec3d& wi) const;
-    double largest_density(const Vec3d& wo) const;
     LambertShape sampled() const { return {}; }
 
     // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
@@ -76,9 +77,6 @@ struct DisneyShape {
     double width() const { return 1; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
-    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
-    double density(const Vec3d& wo, const Vec3d& wi) const;
-    double largest_density(const Vec3d& wo) const;
     LambertShape sampled() const { return {}; }
 
     // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
@@ -166,6 +164,8 @@ struct ToonShape {
 
 struct TableShape;
 
+/// Rays are drawn from these; the other shapes name one of them as sampled().
+using SampledShape = std::variant<LambertShape, GgxShape, ToonShape>;
 using LobeShape = std::variant<LambertShape, DiffuseShape, DisneyShape, GgxShape, ToonShape, TableShape>;
 
 /// A colour channel of a table, times cosθ_i.
@@ -178,12 +178,8 @@ struct TableShape {
     double width() const;
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
-    /// Draws from sampled().
-    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
-    double density(const Vec3d& wo, const Vec3d& wi) const;
-    double largest_density(const Vec3d& wo) const;
     /// Lambert's lobe, or a GGX lobe whose tails reach what a table holds beside its peak.
-    LobeShape sampled() const;
+    SampledShape sampled() const;
 
     // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
     auto operator<=>(const TableShape&) const = default;
@@ -198,7 +194,7 @@ bool is_anisotropic(const LobeShape& shape);
 bool is_stretched(const LobeShape& shape);
 /// Whether it is that or toon: two numbers vary from hit to hit, and there are no fits.
 bool has_two_widths(const LobeShape& shape);
-/// Whether it is Diffuse::bumped, whose ω_o is a normal.
+/// Whether it is Lambert's lobe of a bumped normal, whose ω_o is a normal.
 bool is_bumped(const LobeShape& shape);
 /// Lanes take this number of each view: the azimuth of an anisotropic table, or the width of another shape.
 double lobe_parameter(const LobeShape& shape);

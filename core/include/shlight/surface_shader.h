@@ -47,7 +47,7 @@ struct ShadedLobe {
     bool translucent = false;             ///< it reflects light from the other side than the viewer's, and is diffuse
     std::shared_ptr<const ViewWeight> view_weight;  ///< another factor; null: 1
     int only_order = 0;                             ///< see Lobe
-    std::optional<std::uint32_t> leans_from;        ///< of Diffuse::bumped: the smooth normal, likewise
+    std::optional<std::uint32_t> leans_from;        ///< of bumped lobes: the smooth normal, likewise
     std::optional<ShadedSubsurface> subsurface;     ///< the lobe is then Lambert's, or the one by which light enters
 };
 

@@ -12,6 +12,7 @@
 
 #include <numbers>
 
+#include "lobes/lambert-inl.h"
 #include "shlight/lobe_shape.h"
 #include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
@@ -19,7 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-class DisneyLanes {
+class DisneyLanes : public LambertDrawnLanes {
   public:
     /// The polynomial of the shape as a line in F_i, times π.
     template <class D>
@@ -37,11 +38,7 @@ class DisneyLanes {
     }
     HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
         const Floats d;
-        const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
-        return times_pi(d, cos_i, hn::Mul(square, all(d, 0.25)), view, 1 / std::numbers::pi);
-    }
-    HWY_INLINE V<Floats> density(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {
-        return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
+        return times_pi(d, cos_i, hn::Mul(square_of(sum), all(d, 0.25)), view, 1 / std::numbers::pi);
     }
     template <class D>
     HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {

@@ -117,7 +117,7 @@ class GgxLanes {
         const auto visibility =
             hn::Div(cos_i, hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i), hn::Mul(cos_i, view.masking)));
         // |ω_i + ω_o| is twice ω_i·h.
-        const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
+        const auto square = square_of(sum);
         return with_fresnel(d, hn::Mul(half_distribution(sum, view), visibility),
                             [&]() HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
     }
@@ -240,7 +240,7 @@ class MicrofacetLanes {
 
     HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
         const Floats d;
-        const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
+        const auto square = square_of(sum);
         const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
         const HalfVector<Floats> half = {hn::Mul(sum.x, inverse), hn::Mul(sum.y, inverse), hn::Mul(sum.z, inverse),
                                          hn::Mul(all(d, 0.5), hn::Mul(square, inverse))};

@@ -19,7 +19,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-class LambertLanes {
+/// Lanes of lobes whose rays are drawn from Lambert's.
+class LambertDrawnLanes {
+  public:
+    template <class View>
+    HWY_INLINE V<Floats> density(const HalfSum& /*sum*/, V<Floats> cos_i, const View& /*view*/) const {
+        return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
+    }
+};
+
+class LambertLanes : public LambertDrawnLanes {
   public:
     template <class D>
     struct View {};
@@ -30,9 +39,6 @@ class LambertLanes {
     }
     HWY_INLINE V<Floats> value(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {
         return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
-    }
-    HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
-        return value(sum, cos_i, view);
     }
     template <class D>
     HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& /*half*/, V<D> cos_i, const View<D>& /*view*/) const {

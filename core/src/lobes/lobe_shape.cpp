@@ -27,7 +27,7 @@ bool has_two_widths(const LobeShape& shape) {
 
 bool is_bumped(const LobeShape& shape) {
     const auto* own = std::get_if<DiffuseShape>(&shape);
-    return own != nullptr && own->kind == Diffuse::bumped;
+    return own != nullptr && (own->kind == Diffuse::bumped_ggx || own->kind == Diffuse::bumped_cubic);
 }
 
 double lobe_parameter(const LobeShape& shape) {
@@ -96,6 +96,10 @@ namespace {
 /// Smallest cosθ_o with a finite reciprocal.
 constexpr double kLeastCosine = 1e-300;
 
+SampledShape drawn_from(const LobeShape& shape) {
+    return std::visit([](const auto& s) { return SampledShape(s.sampled()); }, shape);
+}
+
 }  // namespace
 
 double lobe_value(const LobeShape& shape, const Vec3d& wi, const Vec3d& wo) {
@@ -122,19 +126,19 @@ double lobe_albedo(const LobeShape& shape, double cos_theta_o) {
 }
 
 Vec3d sample_lobe(const LobeShape& shape, const Vec3d& wo, const glm::dvec2& point) {
-    return std::visit([&](const auto& s) { return s.sample(wo, point); }, shape);
+    return std::visit([&](const auto& s) { return s.sample(wo, point); }, drawn_from(shape));
 }
 
 double lobe_density(const LobeShape& shape, const Vec3d& wo, const Vec3d& wi) {
-    return wi.z > 0 ? std::visit([&](const auto& s) { return s.density(wo, wi); }, shape) : 0.0;
+    return wi.z > 0 ? std::visit([&](const auto& s) { return s.density(wo, wi); }, drawn_from(shape)) : 0.0;
 }
 
 double largest_lobe_density(const LobeShape& shape, const Vec3d& wo) {
-    return std::visit([&](const auto& s) { return s.largest_density(wo); }, shape);
+    return std::visit([&](const auto& s) { return s.largest_density(wo); }, drawn_from(shape));
 }
 
 LobeShape sampled_shape(const LobeShape& shape) {
-    return std::visit([](const auto& s) { return LobeShape(s.sampled()); }, shape);
+    return std::visit([](const auto& s) { return LobeShape(s); }, drawn_from(shape));
 }
 
 }  // namespace shlight

@@ -14,6 +14,7 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
+#include "lobes/lambert-inl.h"
 #include "lobes/rough_diffuse.h"
 #include "shlight/lobe_shape.h"
 #include "simd/gather-inl.h"
@@ -23,7 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
 template <Diffuse kKind>
-class DiffuseLanes {
+class DiffuseLanes : public LambertDrawnLanes {
   public:
     template <class D>
     struct View {
@@ -38,11 +39,7 @@ class DiffuseLanes {
     }
     HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
         const Floats d;
-        const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
-        return times_pi(d, cos_i, hn::MulAdd(square, all(d, 0.5), all(d, -1)), view, 1 / std::numbers::pi);
-    }
-    HWY_INLINE V<Floats> density(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {
-        return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
+        return times_pi(d, cos_i, hn::MulAdd(square_of(sum), all(d, 0.5), all(d, -1)), view, 1 / std::numbers::pi);
     }
     template <class D>
     HWY_INLINE V<D> over_ndf(D d, const HalfVector<D>& half, V<D> cos_i, const View<D>& view) const {
@@ -60,12 +57,17 @@ class DiffuseLanes {
             const auto t = hn::NegMulAdd(cos_i, view.cosine, between);
             const auto scaled = hn::IfThenElse(hn::Gt(t, zero), hn::Div(t, hn::Max(cos_i, view.cosine)), t);
             return hn::Mul(hn::Mul(all(d, pi * factor), cos_i), hn::Add(one, scaled));
-        } else if constexpr (kKind == Diffuse::bumped) {
+        } else if constexpr (kKind == Diffuse::bumped_ggx) {
             const auto square = hn::Mul(between, between);
             const auto rest = hn::Mul(view.alpha2, hn::Max(hn::Sub(one, square), zero));
             const auto below = hn::Add(between, hn::Sqrt(hn::Add(square, rest)));
             const auto shadow = hn::Div(hn::Add(between, between), hn::Max(below, all(d, 1e-12)));
             return hn::IfThenElseZero(hn::Gt(between, zero), hn::Mul(hn::Mul(all(d, factor), cos_i), shadow));
+        } else if constexpr (kKind == Diffuse::bumped_cubic) {
+            const auto least = hn::Max(hn::Mul(cos_i, view.cosine), all(d, 1e-12));
+            const auto g = hn::Min(hn::Div(hn::Max(between, zero), least), one);
+            const auto shadow = hn::Mul(g, hn::MulAdd(g, hn::Sub(one, g), one));
+            return hn::Mul(hn::Mul(all(d, factor), cos_i), shadow);
         } else {
             const auto cosine = hn::Min(cos_i, one);
             const auto sine = hn::Sqrt(hn::Max(zero, hn::NegMulAdd(cosine, cosine, one)));
@@ -88,8 +90,10 @@ void with_lanes_of(const DiffuseShape& shape, const Function& function) {
             return function(DiffuseLanes<Diffuse::oren_nayar>());
         case Diffuse::oren_nayar_loss:
             return function(DiffuseLanes<Diffuse::oren_nayar_loss>());
-        case Diffuse::bumped:
-            return function(DiffuseLanes<Diffuse::bumped>());
+        case Diffuse::bumped_ggx:
+            return function(DiffuseLanes<Diffuse::bumped_ggx>());
+        case Diffuse::bumped_cubic:
+            return function(DiffuseLanes<Diffuse::bumped_cubic>());
     }
 }
 

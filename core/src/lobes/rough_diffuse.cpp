@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rough diffuse lobes and Disney's, one direction at a time. All draw rays with Lambert's density.
+// Rough diffuse lobes and Disney's, one direction at a time.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,6 +32,23 @@ double bump_shadow(double cosine, double cos_theta_o) {
     const double alpha2 = std::min(kBumpShare * (1 - z2) / z2, 1.0);
     const double square = cosine * cosine;
     return 2 * cosine / (cosine + std::sqrt(square + alpha2 * std::max(1 - square, 0.0)));
+}
+
+/// The share of light that a bump does not shadow, of the quotient of the light's and the bump's cosines.
+double cubic_bump_shadow(double g) {
+    const double clamped = std::clamp(g, 0.0, 1.0);
+    return clamped * (1 + clamped * (1 - clamped));
+}
+
+/// ∫ f·cos dω of Diffuse::bumped_cubic. In the plane of both normals g is 1 + tanψ tanθ_o, ψ being the angle from the
+/// bump's normal, wherever ω_i lies across that plane; with t = -tanψ tanθ_o it is ½ ∫ cosψ (1 - 2t² + t³) dψ.
+double cubic_bump_albedo(double cos_theta_o) {
+    const double c = cos_theta_o, s = std::sqrt(std::max(0.0, 1 - c * c));
+    if (s == 0) {
+        return 1;
+    }
+    const double square = s * s / (c * c);
+    return (1 + c - 2 * square * (std::asinh(c / s) - c) + square / c * (1 - s) * (1 - s)) / 2;
 }
 
 /// ∫ max(0, cosθ_i) dφ along the circle of directions at an angle to ω_o, whose cosine is given.
@@ -95,8 +112,10 @@ double DiffuseShape::value(const Vec3d& wi, const Vec3d& wo) const {
             return wi.z * (1 + agreement(wi, wo));
         case Diffuse::oren_nayar_loss:
             return wi.z * oren_nayar_loss(wi.z);
-        case Diffuse::bumped:
+        case Diffuse::bumped_ggx:
             return wi.z / pi * bump_shadow(glm::dot(wi, wo), wo.z);
+        case Diffuse::bumped_cubic:
+            return wi.z / pi * cubic_bump_shadow(glm::dot(wi, wo) / (wi.z * wo.z));
     }
     return 0;
 }
@@ -108,23 +127,13 @@ double DiffuseShape::albedo(double cos_theta_o) const {
             return pi + (pi / 2 - 2.0 / 3) - oren_nayar_loss(cos_theta_o);
         case Diffuse::oren_nayar_loss:
             return pi * (6.0 / 5 - pi / 6);
-        case Diffuse::bumped:
+        case Diffuse::bumped_ggx:
             return albedo_by_circles(cos_theta_o, 0,
                                      [&](double cosine) { return bump_shadow(cosine, cos_theta_o) / pi; });
+        case Diffuse::bumped_cubic:
+            return cubic_bump_albedo(cos_theta_o);
     }
     return 0;
-}
-
-Vec3d DiffuseShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
-    return LambertShape().sample(wo, point);
-}
-
-double DiffuseShape::density(const Vec3d& wo, const Vec3d& wi) const {
-    return LambertShape().density(wo, wi);
-}
-
-double DiffuseShape::largest_density(const Vec3d& wo) const {
-    return LambertShape().largest_density(wo);
 }
 
 double DisneyShape::value(const Vec3d& wi, const Vec3d& wo) const {
@@ -151,18 +160,6 @@ double DisneyShape::albedo(double cos_theta_o) const {
     }
     const auto fuzz = [](double cosine) { return rise(half_angle_cosine(cosine)); };
     return sheen != 0 ? sum + sheen * albedo_by_circles(c, -1, fuzz) : sum;
-}
-
-Vec3d DisneyShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
-    return LambertShape().sample(wo, point);
-}
-
-double DisneyShape::density(const Vec3d& wo, const Vec3d& wi) const {
-    return LambertShape().density(wo, wi);
-}
-
-double DisneyShape::largest_density(const Vec3d& wo) const {
-    return LambertShape().largest_density(wo);
 }
 
 }  // namespace shlight

@@ -32,7 +32,7 @@ class TableLanes {
     };
 
     /// shape: is kept by reference; its azimuth is not used.
-    explicit TableLanes(const TableShape& shape) : shape_(&shape) {}
+    explicit TableLanes(const TableShape& shape) : shape_(&shape), sampled_(sampled_shape(shape)) {}
 
     template <class D>
     HWY_INLINE View<D> view(D /*d*/, V<D> cos_o, V<D> azimuth) const {
@@ -47,7 +47,7 @@ class TableLanes {
 
     HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
         return looked_up(sum, cos_i, view, [this](const Vec3d& wi, const Vec3d& wo, double /*azimuth*/) {
-            return shape_->density(wo, wi);
+            return lobe_density(sampled_, wo, wi);
         });
     }
 
@@ -107,6 +107,7 @@ class TableLanes {
     }
 
     const TableShape* shape_;
+    LobeShape sampled_;
 };
 
 template <class Function>

@@ -24,19 +24,7 @@ double TableShape::albedo(double cos_theta_o) const {
     return table->albedo(cos_theta_o, azimuth, channel);
 }
 
-Vec3d TableShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
-    return sample_lobe(sampled(), wo, point);
-}
-
-double TableShape::density(const Vec3d& wo, const Vec3d& wi) const {
-    return lobe_density(sampled(), wo, wi);
-}
-
-double TableShape::largest_density(const Vec3d& wo) const {
-    return largest_lobe_density(sampled(), wo);
-}
-
-LobeShape TableShape::sampled() const {
+SampledShape TableShape::sampled() const {
     if (!is_glossy()) {
         return LambertShape{};
     }

@@ -108,6 +108,9 @@ class Broadcast {
 struct HalfSum {
     V<Floats> x, y, z;
 };
+HWY_INLINE V<Floats> square_of(const HalfSum& sum) {
+    return hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
+}
 
 /// The half vector, unit, and its cosine with ω_i and ω_o.
 template <class D>

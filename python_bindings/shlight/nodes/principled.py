@@ -317,32 +317,35 @@ def _oren_nayar_rise(cosine: Value) -> Value:
     return select(cosine < 1e-6, (math.pi / 2 - 2.0 / 3.0) - cosine, whole)
 
 
-def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> Shader:
+def oren_nayar(albedo: Varying, sigma: Number, *, several_bounces: bool = True, at: Vector | None = None) -> Shader:
     """A rough diffuse surface: the improved Oren–Nayar model of Fujii with the light of several bounces (OpenPBR).
 
     It is a sum of three shapes without parameters: Lambert's, the same times 1 + t, where t is what light and view have
     in common along the surface, and what the model's first bounce loses. sigma: 0 … 1, clamped.
+    several_bounces: the last is there, as in Cycles since Blender 4.3.
     """
     rho = reflectance(albedo, "albedo")
     rough = clamp(number(sigma, "sigma"))
     if rough.constant == 0.0:
         return lambert(rho, at)
-    n = normal() if at is None else at
     edge = math.pi / 2 - 2.0 / 3.0
     a = 1.0 / (math.pi + rough * edge)
     b = rough * a
+    first = Shader(
+        (
+            Lobe("lambert", color(rho * (a * (1.0 - rough) * math.pi)), normal=at),
+            Lobe("oren_nayar", color(rho * b), normal=at),
+        )
+    )
+    if not checked_flag("several_bounces", several_bounces):
+        return first
+    n = normal() if at is None else at
     own = a * math.pi + b * _oren_nayar_rise(maximum(dot(towards_viewer(), n), 0.0))
     mean = a * math.pi + b * ((2.0 * math.pi - 5.6) / 3.0)
     saturated = clamped(rho)
     again = saturated * saturated * ((mean / (1.0 - mean)) / math.pi) / (1.0 - saturated * (1.0 - mean))
     varies = select(rough > 0.0, 1.0, 0.0)
-    return Shader(
-        (
-            Lobe("lambert", color(rho * (a * (1.0 - rough) * math.pi)), normal=at),
-            Lobe("oren_nayar", color(rho * b), normal=at),
-            Lobe("oren_nayar_loss", color(rho * again * (1.0 - own) * b * varies), normal=at),
-        )
-    )
+    return first + Shader((Lobe("oren_nayar_loss", color(rho * again * (1.0 - own) * b * varies), normal=at),))
 
 
 def _interface(

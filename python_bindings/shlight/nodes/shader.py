@@ -12,6 +12,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 from shlight import _core
 from shlight._arrays import checked_flag, checked_number
 from shlight.nodes.inputs import normal as smooth_normal
+from shlight.nodes.inputs import towards_viewer
 from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.rays import Ray, color_on_ray, has_filters, on_ray, with_vectors
 from shlight.nodes.values import (
@@ -31,7 +32,14 @@ from shlight.nodes.values import (
 )
 
 BLACK = (0.0, 0.0, 0.0)
-BUMP = math.radians(6.0)
+
+# The share of light that a bump does not throw its own shadow on: G1 of GGX (Estevez, Lecocq & Stein 2019), or a cubic
+# polynomial of the cosines (Chiang, Li & Burley 2019).
+BumpShadow: TypeAlias = Literal["ggx", "cubic"]
+# The angles [rad] between both normals from which on it shows.
+LEAST_LEANS: dict[BumpShadow, float] = {"ggx": math.radians(6.0), "cubic": math.radians(1.5)}
+# How much of Lambert's lobe is in diffuse lobes.
+LAMBERT_PARTS = {"lambert": 1.0, "oren_nayar": math.pi, "disney": 1.0}
 
 
 @dataclass(frozen=True)
@@ -47,12 +55,13 @@ class Subsurface:
 class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
-    # "lambert", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"; "disney", "disney_retro",
-    # "disney_retro_square", "disney_entry", "disney_sheen"; one lobe of a Bsdf; "toon" and "glossy_toon", whose alpha
-    # is the size and `rest` the smoothness; or microfacets, "ggx", "beckmann" or "ashikhmin_shirley" with Fresnel
-    # factor 1, and the same with "_schlick" or "_dielectric" for its rise towards grazing angles, "_dip", "_wide_dip"
-    # or "_narrow_dip" for what a metal's curve lacks, and "_broad_dip" and "_linear" for films; with "stretched_"
-    # before it they have two widths: `rest` is alpha across the tangent, and the three of the tangent
+    # "lambert", "bumped_lambert_ggx", "bumped_lambert_cubic", "oren_nayar", "oren_nayar_loss", "translucent"; "disney",
+    # "disney_retro", "disney_retro_square", "disney_entry", "disney_sheen"; one lobe of a Bsdf; "toon" and
+    # "glossy_toon", whose alpha is the size and `rest` the smoothness; or microfacets, "ggx", "beckmann" or
+    # "ashikhmin_shirley" with Fresnel factor 1, and the same with "_schlick" or "_dielectric" for its rise towards
+    # grazing angles, "_dip", "_wide_dip" or "_narrow_dip" for what a metal's curve lacks, and "_broad_dip" and
+    # "_linear" for films; with "stretched_" before it they have two widths: `rest` is alpha across the tangent, and the
+    # three of the tangent
     kind: str | _core.Bsdf
     weight: Color
     alpha: Value | None = None  # roughness², of microfacets; along the tangent, if they have two
@@ -60,7 +69,8 @@ class Lobe:
     ior: float = 1.5  # of "ggx_dielectric"
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
     rest: tuple[Value, ...] = ()  # what follows alpha of a shape with more numbers, in the order of `ShadedLobe::alpha`
-    leans_from: Vector | None = None  # of "bumped_lambert", the smooth normal; None: the interpolated one
+    leans_from: Vector | None = None  # of LAMBERT_PARTS, the smooth normal; None: the interpolated one
+    bump_shadow: BumpShadow = "ggx"  # of LAMBERT_PARTS that lean from it
     below: Subsurface | None = None  # light comes out of the body, and this is by what it enters
 
 
@@ -163,7 +173,7 @@ class Shader:
             below = lobe.below
             if below is not None:
                 below = replace(below, numbers=tuple(own(value) for value in below.numbers))
-            before = own_normal(lobe.leans_from) if lobe.kind == "bumped_lambert" else None
+            before = own_normal(lobe.leans_from) if lobe.kind in LAMBERT_PARTS else None
             rest = tuple(own(value) for value in lobe.rest)
             return replace(turned(lobe), rest=rest, leans_from=before, below=below)
 
@@ -175,6 +185,15 @@ class Shader:
             aovs={name: own(of) if isinstance(of, Value) else own_color(of) for name, of in self.aovs.items()},
             refractions=tuple(replace(turned(of), ior=own(of.ior)) for of in self.refractions),
         )
+
+    def with_bump_shadow(self, bump_shadow: BumpShadow) -> Shader:
+        """The same with another shadow of bumps: "ggx", as in Cycles since Blender 4.5, or "cubic", as before.
+
+        Raises ValueError naming the argument.
+        """
+        if bump_shadow not in LEAST_LEANS:
+            raise ValueError(f"bump_shadow must be 'ggx' or 'cubic', not {bump_shadow!r}")
+        return replace(self, lobes=tuple(replace(lobe, bump_shadow=bump_shadow) for lobe in self.lobes))
 
     def compiled(self) -> _core.SurfaceShader:
         """The core's object of this shader."""
@@ -206,7 +225,7 @@ class Shader:
         """Lobes that show."""
         normals: dict[int, Vector] = {}
         found = []
-        for lobe in self.lobes:
+        for lobe in _merged(tuple(part for whole in self.lobes for part in _shadowed_by_bumps(whole))):
             weight = color_on_ray(lobe.weight, Ray.CAMERA, filtered=self._is_filtered)
             if weight.constant == BLACK:
                 continue
@@ -283,10 +302,26 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     for lobe in lobes:
         numbers = [_identity(value) for value in (lobe.alpha, *lobe.rest)]
         objects = map(id, (lobe.normal, lobe.leans_from, lobe.below))
-        key = (lobe.kind, lobe.ior, *objects, lobe.several_bounces, *numbers)
+        key = (lobe.kind, lobe.ior, *objects, lobe.several_bounces, lobe.bump_shadow, *numbers)
         same = found.get(key)
         found[key] = lobe if same is None else replace(lobe, weight=color(same.weight + lobe.weight))
     return tuple(found.values())
+
+
+def _shadowed_by_bumps(lobe: Lobe) -> tuple[Lobe, ...]:
+    """A lobe with Lambert's part of it in the shadow that a bump throws on itself, where its normal leans."""
+    part = LAMBERT_PARTS.get(lobe.kind) if isinstance(lobe.kind, str) else None
+    if part is None or lobe.below is not None or lobe.normal is None or lobe.normal is lobe.leans_from:
+        return (lobe,)
+    n = normalize(lobe.normal)
+    smooth = smooth_normal() if lobe.leans_from is None else lobe.leans_from
+    own = lobe.weight * part * (dot(n, smooth) < math.cos(LEAST_LEANS[lobe.bump_shadow]))
+    if lobe.kind == "disney":
+        away = 1.0 - clamp(dot(towards_viewer(), n))
+        own = own * (1.0 - 0.5 * (away * away * away * away * away))
+    plain = replace(lobe, leans_from=None)
+    less = replace(plain, kind="lambert", weight=color(own * -1.0))
+    return plain, less, replace(lobe, kind=f"bumped_lambert_{lobe.bump_shadow}", weight=color(own))
 
 
 def _identity(value: Value | None) -> Any:
@@ -311,19 +346,10 @@ def scaled(bsdf: _core.Bsdf, factor: Varying) -> Shader:
 def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
     """Lambert's reflection.
 
-    A normal that leans away from the smooth one by more than `BUMP` is in the shadow that a bump throws on itself, as
-    in Cycles (Estevez, Lecocq & Stein 2019); for less the shadow hardly shows.
+    Where a normal leans away from the smooth one it is in the shadow that a bump throws on itself, as in Cycles; see
+    `Shader.with_bump_shadow`.
     """
-    rho = reflectance(albedo, "albedo")
-    if normal is None:
-        return Shader((Lobe("lambert", rho),))
-    leans = dot(normalize(normal), smooth_normal()) < math.cos(BUMP)
-    return Shader(
-        (
-            Lobe("lambert", color(rho * (1.0 - leans)), normal=normal),
-            Lobe("bumped_lambert", color(rho * leans), normal=normal),
-        )
-    )
+    return Shader((Lobe("lambert", reflectance(albedo, "albedo"), normal=normal),))
 
 
 def translucent(albedo: Varying, normal: Vector | None = None) -> Shader:
