@@ -17,6 +17,7 @@ from bpy.app.handlers import persistent
 
 from . import record
 from .report import Effect
+from .windows import redraw
 
 ENGINE = "SHLIGHT"
 LATEST_UNDO = 0.5  # seconds after the end of the render that it stops
@@ -71,6 +72,7 @@ def _note_begin(scene: Any, *_: Any) -> None:
 @persistent
 def _note_end(*_: Any) -> None:
     renders.end()
+    redraw("PROPERTIES")
 
 
 @persistent

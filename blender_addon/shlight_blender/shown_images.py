@@ -47,12 +47,6 @@ def draw_image(image: Any, pixels: Pixels) -> None:
     bpy.app.timers.register(_settle, first_interval=SETTLE_SECONDS)
 
 
-def image_editors() -> list[Any]:
-    """Areas of all windows."""
-    windows = bpy.context.window_manager.windows
-    return [area for window in windows for area in window.screen.areas if area.type == "IMAGE_EDITOR"]
-
-
 def _write(image: Any, pixels: Pixels) -> None:
     image.pixels.foreach_set(np.ascontiguousarray(pixels).ravel())
     image.update()

@@ -20,6 +20,7 @@ from .frame import Frame, frame_of
 from .light_mix import Factors, factors_of
 from .picture_maker import LARGEST, Job, Picture, PictureMaker
 from .report import ExportError
+from .windows import redraw
 
 Matrix = NDArray[np.float64]
 
@@ -208,6 +209,7 @@ class RenderedViewport:
         if changed:
             self._updated = f"{changes.parts()} read in {1e3 * (time.perf_counter() - start):.0f} ms"
             record.show_viewport(depsgraph.scene, self._exported)
+            redraw("PROPERTIES")
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
             self._maker.start(Job(self._exported.scene, view.frame, settings, denoises, self._factors))
         self._shown = needed

@@ -14,14 +14,14 @@ sys.path.append(str(Path(__file__).parent))
 from debian_steps import FOLDER, area_of, start
 
 ended = []
-drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "previews": []}
+REPORT = "SHLIGHT_RENDER_PT_report"
+drawn = {"panels": {}, "redrawn": [], "nodes": {}, "viewport_updates": 0, "messages": [], "previews": []}
 
 
 def watched(original, name):
     def draw(self, context):
         original(self, context)
-        if name not in drawn["panels"]:
-            drawn["panels"].append(name)
+        drawn["panels"][name] = drawn["panels"].get(name, 0) + 1
 
     return draw
 
@@ -61,6 +61,8 @@ def steps():
         yield
     yield from note_previews()
     set_sky(scene)
+    properties.context = "RENDER"
+    yield
     for number in range(2):
         yield from final_render(scene, FOLDER / f"final_{number}.exr")
     yield from undo_during_a_render(scene)
@@ -107,11 +109,15 @@ def set_sky(scene):
 def final_render(scene, path):
     """Renders like F12, while the window goes on."""
     scene.render.resolution_x, scene.render.resolution_y = 64, 48
+    bpy.context.preferences.view.render_display_type = "NONE"  # a window that opens has all others drawn anew
     ended.clear()
     bpy.ops.render.render("INVOKE_DEFAULT")
     # The job is not yet running while it waits for another one, such as the material's preview, to stop.
     while not ended or bpy.app.is_job_running("RENDER"):
         yield
+    yield
+    yield
+    drawn["redrawn"].append(drawn["panels"].get(REPORT, 0) > ended[0])
     drawn["messages"].append(record.last.messages)
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
@@ -134,5 +140,5 @@ def undo_during_a_render(scene):
 
 watch()
 for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
-    handlers.append(lambda *_: ended.append(True))
+    handlers.append(lambda *_: ended.append(drawn["panels"].get(REPORT, 0)))
 start(steps(), drawn)

@@ -268,6 +268,7 @@ def test_window(tmp_path: Path) -> None:
     assert blue > 2 * no_red
     assert measured_green > 2 * measured_red
     assert drawn["messages"] == [[], []]
+    assert drawn["redrawn"] == [True, True]
     assert drawn["undone"] == ["Render: an undo or redo has stopped it; its picture is unfinished"]
     first, second = (read_exr(tmp_path / f"final_{i}.exr")[..., :3] for i in range(2))
     assert first.any()

@@ -46,7 +46,8 @@ class Layout:
 
 def drawn_by(panel: Any, **context: Any) -> Layout:
     """The layout that `panel` draws in a context of shlight; empty if it is not shown."""
-    layout, shown_in = Layout(), SimpleNamespace(engine="SHLIGHT", **context)
+    around = {"preferences": bpy.context.preferences, "region": SimpleNamespace(width=500)}
+    layout, shown_in = Layout(), SimpleNamespace(engine="SHLIGHT", **around | context)
     if panel.poll(shown_in):
         panel.draw(SimpleNamespace(layout=layout), shown_in)
     return layout

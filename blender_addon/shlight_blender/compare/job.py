@@ -14,6 +14,7 @@ from ..background import command, environment, save_unsaved_images
 from ..names import name_of, one_line
 from ..native import native_problem
 from ..running import ENGINE
+from ..windows import redraw
 from ..worker_process import WorkerError, WorkerProcess
 
 WORKER = "compare.render"
@@ -109,9 +110,7 @@ class Session:
         for window in bpy.context.window_manager.windows:
             with bpy.context.temp_override(window=window):
                 bpy.context.workspace.status_text_set(text)
-            for area in window.screen.areas:
-                if area.type in {"PROPERTIES", "IMAGE_EDITOR"}:
-                    area.tag_redraw()
+        redraw("PROPERTIES", "IMAGE_EDITOR")
 
     def end(self, ended_by: str = "") -> None:
         """Ends the job, if there is one, and leaves nothing of it."""

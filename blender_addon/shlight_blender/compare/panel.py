@@ -10,9 +10,9 @@ import bpy
 from ..compat import draw_progress
 from ..names import name_of, one_line
 from ..record import light_name
-from ..shown_images import image_editors
 from ..ui.base import draw_text, panel, with_names_aside
 from ..ui.report import draw_place
+from ..windows import areas
 from ..worker_process import WorkerError
 from . import overlay, results
 from .job import Job, session
@@ -184,7 +184,7 @@ class SHLIGHT_OT_show_comparison(bpy.types.Operator):
 
 def show_image(name: str) -> None:
     """Shows an image in an image editor; where none is open, soon in one that Blender opens for renders."""
-    editors = image_editors()
+    editors = areas("IMAGE_EDITOR")
     results.show([(editor, name) for editor in editors[:1]])
     if not editors and not bpy.app.background:
         # Blender goes on with a modal operator that opens a window, though it has finished.
@@ -194,7 +194,7 @@ def show_image(name: str) -> None:
 def _open_editor(name: str) -> None:
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         bpy.ops.render.view_show("INVOKE_DEFAULT")
-    results.show([(editor, name) for editor in image_editors()[:1]])
+    results.show([(editor, name) for editor in areas("IMAGE_EDITOR")[:1]])
 
 
 class SHLIGHT_OT_remove_comparison(bpy.types.Operator):

@@ -13,7 +13,8 @@ import bpy
 import numpy as np
 
 from ..names import name_of
-from ..shown_images import Pixels, draw_image, image_editors, make_image
+from ..shown_images import Pixels, draw_image, make_image
+from ..windows import areas
 from .pictures import difference_limit, in_palette
 
 COMPARISON, DIFFERENCE, REFERENCE = "shlight Comparison", "shlight Difference", "shlight Reference"
@@ -110,7 +111,7 @@ def _images() -> list[Any]:
 def shown() -> list[tuple[Any, str]]:
     """Areas that show an image of the comparison, and its name."""
     images = _images()
-    return [(area, image.name) for area in image_editors() if (image := area.spaces.active.image) in images]
+    return [(area, image.name) for area in areas("IMAGE_EDITOR") if (image := area.spaces.active.image) in images]
 
 
 def show(names: list[tuple[Any, str]]) -> None:

@@ -74,13 +74,11 @@ def panel(
     return made
 
 
-def draw_depth(layout: Any, scene: Any, bounces: int) -> None:
+def draw_depth(layout: Any, context: Any, bounces: int) -> None:
     """Says what a picture of so many bounces lacks of what the file asks Cycles for."""
-    asked = scene.cycles.max_bounces if hasattr(scene, "cycles") else 0
-    if bounces == 0:
-        layout.label(text=DIRECT_ONLY, icon="INFO")
-    elif bounces < asked:
-        layout.label(text=MORE_IN_CYCLES.format(asked), icon="INFO")
+    asked = context.scene.cycles.max_bounces if hasattr(context.scene, "cycles") else 0
+    if bounces < max(asked, 1):
+        draw_text(layout, context, MORE_IN_CYCLES.format(asked) if bounces else DIRECT_ONLY, "INFO")
 
 
 def with_names_aside(layout: Any) -> Any:
@@ -92,7 +90,7 @@ def with_names_aside(layout: Any) -> Any:
 
 def draw_text(layout: Any, context: Any, text: str, icon: str) -> None:
     """Text in lines that fit the region; the icon is before the first of them."""
-    scale = context.preferences.system.ui_scale
+    scale = context.preferences.system.ui_scale or 1.0  # 0 without a window
     letters = max(int((context.region.width / scale - 60) / PIXELS_PER_LETTER), 20)
     for number, line in enumerate(textwrap.wrap(text, letters)):
         layout.label(text=line, icon="BLANK1" if number else icon)

@@ -15,8 +15,9 @@ from bpy.app.handlers import persistent
 from .. import record
 from ..light_mix import ONE, factors_of, follow_lamps
 from ..names import with_name
-from ..shown_images import draw_image, image_editors, make_image
-from .base import panel
+from ..shown_images import draw_image, make_image
+from ..windows import areas, redraw
+from .base import draw_text, panel
 
 MIX, RENDERED = "shlight Light Mix", "Render Result"
 ROWS = 5
@@ -26,10 +27,7 @@ _folder: Path | None = None  # of the image's file
 
 def show_mix(context: Any) -> None:
     """Shows the mix in the place of the render it is made of, and that again where nothing differs."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    redraw("VIEW_3D")
     factors, mix = factors_of(context.scene), record.last.mix
     if factors is None or mix_problem(context) or (mix.is_rendered and factors == mix.factors):
         _exchange(MIX, RENDERED)
@@ -62,7 +60,7 @@ def _draw(pixels: Any) -> None:
 
 
 def _exchange(before: str, after: str) -> None:
-    for area in image_editors():
+    for area in areas("IMAGE_EDITOR"):
         space = area.spaces.active
         if space.image is not None and space.image.name == before:
             space.image = bpy.data.images.get(after)
@@ -174,8 +172,10 @@ def light_mixer(layout: Any, context: Any) -> None:
     settings = context.scene.shlight
     if not settings.use_light_mixer:
         layout.active = False
+    elif not settings.light_mix:
+        draw_text(layout, context, "There are no lamps; light of surfaces is not mixed", "INFO")
     elif problem := mix_problem(context):
-        layout.label(text=problem, icon="INFO")
+        draw_text(layout, context, problem, "INFO")
     layout.template_list("SHLIGHT_UL_light_mix", "", settings, "light_mix", settings, "light_mix_row", rows=ROWS)
     buttons = layout.row(align=True)
     buttons.operator(SHLIGHT_OT_apply_light_mix.bl_idname)

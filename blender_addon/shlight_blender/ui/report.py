@@ -82,14 +82,14 @@ def draw_place(layout: Any, place: str, text: str) -> None:
 def report(layout: Any, context: Any) -> None:
     """Unsupported features, those with the largest effect first."""
     if not record.shown.is_of(context.scene):
-        layout.label(text="Render to see what shlight draws otherwise than Cycles")
+        draw_text(layout, context, "Render to see what shlight draws otherwise than Cycles", "INFO")
         return
     if record.shown.scene_error:
         draw_text(layout, context, record.shown.scene_error, "ERROR")
     messages = [message for message in record.shown.report if message.effect < Effect.SLIGHT]
     bounces = record.shown.settings.get("max_bounces")
     if bounces is not None:
-        draw_depth(layout, context.scene, bounces)
+        draw_depth(layout, context, bounces)
     if not messages and not record.shown.scene_error and bounces is not None:
         layout.label(text=f"As Cycles draws {'it with ' * (bounces > 0)}{record.light_name(bounces)}", icon="CHECKMARK")
     for message in messages:

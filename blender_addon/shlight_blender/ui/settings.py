@@ -11,7 +11,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
 from ..compat import position_owner
-from .base import DIRECT_ONLY, draw_depth, panel
+from .base import DIRECT_ONLY, draw_depth, draw_text, panel
 
 PRESETS = Path(__file__).with_name("presets")
 PRESET_SETTINGS = (
@@ -63,7 +63,7 @@ def sampling(layout: Any, context: Any) -> None:
     """How many camera rays pixels get."""
     settings = context.scene.shlight
     if settings.max_bounces == 0:
-        layout.label(text=DIRECT_ONLY, icon="INFO")
+        draw_text(layout, context, DIRECT_ONLY, "INFO")
     layout.prop(settings, "noise_threshold")
     samples = ["pixel_samples"] if settings.pixel_samples else ["max_samples", "min_samples"]
     _props(layout.column(align=True), settings, *samples)
@@ -83,7 +83,7 @@ def sampling_viewport(layout: Any, context: Any) -> None:
 @panel("SHLIGHT_RENDER_PT_light", "Light Paths", closed=True)
 def light(layout: Any, context: Any) -> None:
     """Paths of light."""
-    draw_depth(layout, context.scene, context.scene.shlight.max_bounces)
+    draw_depth(layout, context, context.scene.shlight.max_bounces)
     column = layout.column(align=True)
     _props(column, context.scene.shlight, "max_bounces", "glossy_bounces", "transmission_bounces")
     cycles = getattr(context.scene, "cycles", None)
