@@ -161,6 +161,13 @@ def varying(studio: Any) -> Any:
     return material
 
 
+def pixel_error(image: Any, reference: Any) -> float:
+    """relMSE on the scale of each pixel's brightest channel: films have colours outside of sRGB, of which Cycles cuts
+    the channels that would be below 0."""
+    scale = reference.max(axis=-1, keepdims=True) ** 2 + 0.01 * reference.mean() ** 2
+    return float(np.mean((image - reference) ** 2 / scale))
+
+
 @pytest.mark.parametrize(
     ("light", "names", "samples"),
     [
@@ -203,7 +210,7 @@ def test_as_bright_as_in_cycles(studio: Any, light: str, names: tuple[str, ...] 
     wrong = {}
     for name, (row, column) in zip(made, places, strict=True):
         ours, theirs = (each[SIDE * row :, SIDE * column :][:SIDE, :SIDE] for each in pictures)
-        ratio, error = mean_ratio(ours, theirs), rel_mse(ours, theirs)
+        ratio, error = mean_ratio(ours, theirs), (pixel_error if "film" in name else rel_mse)(ours, theirs)
         print(f"{name:30s} mean {100 * (ratio - 1):+.2f} %, relMSE {error:.1e}")
         most = 1e-1 if name in SPOTS else 1e-2 if name in NARROW_RIMS else 2.5e-3 if "toon" in name else 1.5e-3
         if "film" in name:
