@@ -58,8 +58,6 @@ def has_panorama_settings(lens: Any) -> bool:
 
 # The Principled BSDF has a specular layer over the diffuse base, or is a plain sum of both.
 PRINCIPLED_IS_LAYERED = IS_BLENDER_4
-# Its inputs that are not supported, with the values at which they do nothing.
-PRINCIPLED_UNSUPPORTED: dict[str, float] = {} if IS_BLENDER_4 else {"Clearcoat": 0.0}
 # Cycles' thin films by name of `nodes.principled`.
 THIN_FILM_MODEL: Literal["spectral", "gaussians"] = "spectral" if VERSION >= (5, 0, 0) else "gaussians"
 # Fresnel's curve of metals by name of `nodes.conductor`.

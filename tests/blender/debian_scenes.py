@@ -127,6 +127,19 @@ def satin(studio):
     shine_on(studio, "ShaderNodeBsdfPrincipled", **inputs)
 
 
+def lacquer(studio):
+    """A rough clear coat over bumps."""
+    studio.scene.cycles.samples = 2048
+    inputs = {"Base_Color": (0.1, 0.2, 0.3), "Specular": 0.0, "Clearcoat": 1.0, "Clearcoat_Roughness": 0.5}
+    shine_on(studio, "ShaderNodeBsdfPrincipled", **inputs)
+    tree = next(each.active_material for each in studio.scene.objects if each.active_material).node_tree
+    noise, bump = tree.nodes.new("ShaderNodeTexNoise"), tree.nodes.new("ShaderNodeBump")
+    bump.inputs["Distance"].default_value = 0.1
+    tree.links.new(noise.outputs["Fac"], bump.inputs["Height"])
+    for name in ("Normal", "Clearcoat Normal"):
+        tree.links.new(bump.outputs["Normal"], tree.nodes["Principled BSDF"].inputs[name])
+
+
 def velvet(studio):
     material = studio.material("ShaderNodeBsdfVelvet", Color=(0.8, 0.3, 0.2), Sigma=0.6)
     studio.plane(material=material)
@@ -272,7 +285,7 @@ def displaced(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, brushed, principled, satin, velvet, translucent, transmission, curves, noise, sky, dark,
+    metal, brushed, principled, satin, lacquer, velvet, translucent, transmission, curves, noise, sky, dark,
     panoramic, orthographic, simplified, flat_camera, coarse, displaced,
 ]  # fmt: skip
 

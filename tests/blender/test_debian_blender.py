@@ -102,6 +102,7 @@ OTHERS = [
     "brushed",
     "principled",
     "satin",
+    "lacquer",
     "velvet",
     "translucent",
     "transmission",

@@ -239,6 +239,35 @@ def test_the_parts_of_disneys_diffuse_reflection() -> None:
         )
 
 
+@pytest.mark.parametrize("roughness", [0.3, 0.5, 1.0])
+def test_the_clear_coat_of_disney(roughness: float) -> None:
+    """GTR1 of alpha = roughness², and masking of alpha 0.25."""
+
+    def coat(ways: Doubles) -> Doubles:
+        half = ways + VIEW
+        half /= np.linalg.norm(half, axis=-1, keepdims=True)
+        squared = roughness**4
+        spread = 1 + (squared - 1) * half[:, 2] ** 2
+        normals = 1 / math.pi if roughness == 1 else (squared - 1) / (math.pi * math.log(squared) * spread)
+        masked = sum((np.sqrt(1 + 0.0625 * (1 / z**2 - 1)) - 1) / 2 for z in (VIEW[2], ways[:, 2]))
+        cosine = half @ VIEW
+        g = np.sqrt(1.25 + cosine**2)
+        rise = (
+            0.5
+            * ((g - cosine) / (g + cosine)) ** 2
+            * (1 + ((cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1)) ** 2)
+        )
+        return np.asarray(0.25 * rise * normals / (1 + masked) / (4 * VIEW[2]))
+
+    for sun in LIGHTS:
+        truth = float(coat(sun[None])[0])
+        # Four lobes, and masking for one angle of light, of what is 1 % of the light at most angles.
+        error = 0.16 if roughness == 1 else 0.09
+        assert abs(radiance(nodes.disney_clearcoat(1.0, roughness), sun)[0] / truth - 1) <= (
+            error if sun[2] > 0.5 else 0.35
+        )
+
+
 @pytest.mark.parametrize(
     ("n", "k", "kink"),
     [(0.18, 3.42, 0), (1.37, 1.77, 0), (2.76, 3.87, 0), (1.1, 6.6, 0), (0.0, 1.0, 0), (0.5, 0.5, 0.04), (0, 0, 0)],

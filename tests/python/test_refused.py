@@ -45,6 +45,7 @@ OF_NODES: dict[str, tuple[Any, str, tuple[Any, ...]]] = {
     "toon": (lambda size: nodes.toon(0.5, size, 0.0), "size", ("high", NAN, INF)),
     "smooth": (lambda smooth: nodes.toon(0.5, 0.5, smooth), "smooth", ("high", NAN, INF)),
     "disney": (nodes.disney_sheen, "tint", NO_COLOR),
+    "coat": (lambda roughness: nodes.disney_clearcoat(1.0, roughness), "roughness", ("high", NAN, INF)),
     "body": (lambda radius: nodes.subsurface(0.5, radius), "radius", NO_COLOR[:1] + NO_COLOR[2:4]),
     "product": (nodes.lambert(0.5).__mul__, "factor", NO_COLOR),
     "lambert": (nodes.lambert, "albedo", ("red",)),

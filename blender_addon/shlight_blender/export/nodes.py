@@ -215,11 +215,6 @@ class NodeInputs:
         """Reports a rough diffuse surface with bumps."""
         self.remark("its bumps shadow themselves as those of a surface without diffuse roughness", Effect.SLIGHT)
 
-    def ignore_unless(self, name: str, neutral: float) -> None:
-        """Reports an input that is not supported, unless it has the value at which it does nothing."""
-        if name in self.node.inputs and self.number(name).constant != neutral:
-            self.remark(f"'{name}' is not supported; {neutral:g} is used")
-
 
 ReadNode = Callable[[NodeInputs], "Varying | Shader"]
 

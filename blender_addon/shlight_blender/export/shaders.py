@@ -16,7 +16,6 @@ from ..compat import (
     DIFFUSE_KEEPS_ENERGY,
     FRESNEL_MODEL,
     PRINCIPLED_IS_LAYERED,
-    PRINCIPLED_UNSUPPORTED,
     SUBSURFACE_ENTRY_IS_DIFFUSE,
     SUBSURFACE_METHODS,
     THIN_FILM_MODEL,
@@ -49,8 +48,6 @@ PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Sheen Tint", "Emission Color
 
 def read_principled(inputs: NodeInputs) -> Shader:
     """Shader of a Principled BSDF node."""
-    for name, neutral in PRINCIPLED_UNSUPPORTED.items():
-        inputs.ignore_unless(name, neutral)
     return _read_layered(inputs) if PRINCIPLED_IS_LAYERED else _read_sum(inputs)
 
 
@@ -128,6 +125,7 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     transmission = clamp(inputs.number("Transmission"))
     if transmission.constant != 0.0:
         inputs.remark_glass("'Transmission'")
+    coat = maximum(inputs.number("Clearcoat"), 0.0)
     through = transmission * (1.0 - metallic)
     diffuse = (1.0 - metallic) * (1.0 - transmission)
     surface = _diffuse_of_sum(inputs, base, roughness, at) * diffuse
@@ -146,6 +144,9 @@ def _read_sum(inputs: NodeInputs) -> Shader:
         stretch = aspect_stretch(roughness, share, turns, _tangent(inputs), n)
         lobes = (Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n))
         surface += Shader(stretched(lobes, stretch)) * (1.0 - through)
+    if coat.constant != 0.0:
+        coat_at = inputs.linked_vector("Clearcoat Normal")
+        surface += nodes.disney_clearcoat(coat, inputs.number("Clearcoat Roughness"), at=coat_at)
     if through.constant != 0.0:
         surface += _glass_of_sum(inputs, base, hue=color(base * tint + (1.0 - tint)), roughness=roughness) * through
     return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha

@@ -7,7 +7,7 @@ What these functions return stands where a constant stood: `Bsdf.lambert(nodes.i
 from shlight.nodes import colors, inputs, mathematics, rays, values
 from shlight.nodes.cells import Gabor, Voronoi, gabor, voronoi
 from shlight.nodes.colors import mix_color
-from shlight.nodes.disney import disney_diffuse, disney_sheen, disney_subsurface
+from shlight.nodes.disney import disney_clearcoat, disney_diffuse, disney_sheen, disney_subsurface
 from shlight.nodes.fabrics import microfibre, velvet
 from shlight.nodes.inputs import (
     attribute,
@@ -63,6 +63,7 @@ __all__ = [
     "clamp",
     "colors",
     "conductor",
+    "disney_clearcoat",
     "disney_diffuse",
     "disney_sheen",
     "disney_subsurface",

@@ -1,14 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""Disney's diffuse reflection and first sheen, which Blender's Principled BSDF had before version 4."""
+"""Disney's diffuse reflection, first sheen and clear coat, which Blender's Principled BSDF had before version 4."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
+from shlight.nodes.inputs import normal, towards_viewer
+from shlight.nodes.principled import reflecting_normal
 from shlight.nodes.shader import Lobe, Shader
 from shlight.nodes.subsurface import subsurface
-from shlight.nodes.values import Number, Varying, Vector, clamp, color, number, reflectance, vector
+from shlight.nodes.values import (
+    Number,
+    Value,
+    Varying,
+    Vector,
+    clamp,
+    color,
+    dot,
+    maximum,
+    number,
+    reflectance,
+    sqrt,
+    vector,
+)
+
+COAT_F0 = 0.04
+COAT_ALPHA = 0.0178**2  # the least
+COAT_LIGHT = 0.5  # the cosine of light that its lobes reflect as bright as the model does
 
 
 def disney_diffuse(albedo: Varying, roughness: Number, *, at: Vector | None = None) -> Shader:
@@ -47,3 +68,31 @@ def disney_sheen(tint: Varying, *, at: Vector | None = None) -> Shader:
     """
     n = None if at is None else vector(at, "at")
     return Shader((Lobe("disney_sheen", reflectance(tint, "tint"), normal=n),))
+
+
+def disney_clearcoat(weight: Number, roughness: Number, *, at: Vector | None = None) -> Shader:
+    """A clear coat of index 1.5, whose highlight has long tails (Burley 2012, "Physically-Based Shading at Disney").
+
+    Its distribution of normals, GTR1 of alpha = roughness², is the mean of GGX's over the logarithm of alpha from that
+    on to 1. Four lobes make it up, by the rule of Gauss and Legendre. Each masks itself by its own alpha, and is as
+    bright as with the model's masking, of alpha 0.25, for light of one angle. weight: 1 reflects a quarter of what the
+    index says, as in Blender 3.4. roughness: clamped to 0.0178 … 1. Raises ValueError naming an argument.
+    """
+    n = reflecting_normal(normal() if at is None else vector(at, "at"))
+    alpha = clamp(number(roughness, "roughness"))
+    alpha = maximum(alpha * alpha, COAT_ALPHA)
+    share = reflectance(weight, "weight") * 0.25
+    cosine = clamp(dot(towards_viewer(), n), 0.01)
+    lobes = []
+    for node, part in zip(*np.polynomial.legendre.leggauss(4), strict=True):
+        width = alpha ** (0.5 - 0.5 * float(node))
+        own = share * (_masked(width, cosine) / _masked(number(0.25), cosine) * (0.5 * float(part)))
+        lobes.append(Lobe("ggx", color(own * COAT_F0), width, n))
+        lobes.append(Lobe("ggx_dielectric", color(own * (1.0 - COAT_F0)), width, n, 1.5))
+    return Shader(tuple(lobes))
+
+
+def _masked(alpha: Value, cosine: Value) -> Value:
+    """1 over the share of GGX's microfacets that view and light see, this at COAT_LIGHT."""
+    tangents = (1.0 / (cosine * cosine) - 1.0, number(1.0 / COAT_LIGHT**2 - 1.0))
+    return sum((0.5 * sqrt(1.0 + alpha * alpha * tangent) for tangent in tangents), start=number(0.0))
