@@ -93,7 +93,7 @@ def smooth(studio):
 
 
 def shine_on(studio, shader, **values):
-    material = studio.material(shader, Roughness=0.5, **values)
+    material = studio.material(shader, **{"Roughness": 0.5} | values)
     studio.plane(material=material)
     studio.ball(1.0, material, location=(0, 0, 1.1))
     studio.lamp("POINT", 150, (1.5, -2, 3), shadow_soft_size=0.6)
@@ -125,6 +125,16 @@ def satin(studio):
     """Rough, under sheen."""
     inputs = {"Base_Color": (0.8, 0.3, 0.2), "Specular": 0.0, "Sheen": 1.0, "Sheen_Tint": 0.7}
     shine_on(studio, "ShaderNodeBsdfPrincipled", **inputs)
+
+
+def several_bounces(studio):
+    """Balls whose microfacets light each other."""
+    studio.scene.cycles.samples = 2048
+    inputs = {"Color": (0.9, 0.6, 0.3), "Roughness": 0.6, "distribution": "MULTI_GGX"}
+    studio.ball(1.0, studio.material("ShaderNodeBsdfGlossy", **inputs), location=(-1.1, 0, 1.1))
+    inputs = {"Base_Color": (0.9, 0.6, 0.3), "Metallic": 0.7, "Roughness": 0.6, "distribution": "MULTI_GGX"}
+    studio.ball(1.0, studio.material("ShaderNodeBsdfPrincipled", **inputs), location=(1.1, 0, 1.1))
+    studio.lamp("POINT", 150, (1.5, -2, 3), shadow_soft_size=0.6)
 
 
 def lacquer(studio):
@@ -285,8 +295,8 @@ def displaced(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, brushed, principled, satin, lacquer, velvet, translucent, transmission, curves, noise, sky, dark,
-    panoramic, orthographic, simplified, flat_camera, coarse, displaced,
+    metal, brushed, principled, several_bounces, satin, lacquer, velvet, translucent, transmission, curves, noise, sky,
+    dark, panoramic, orthographic, simplified, flat_camera, coarse, displaced,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

@@ -101,6 +101,7 @@ OTHERS = [
     "metal",
     "brushed",
     "principled",
+    "several_bounces",
     "satin",
     "lacquer",
     "velvet",
@@ -118,13 +119,13 @@ OTHERS = [
 @pytest.mark.parametrize("scene", [*LAMPS, *OTHERS])
 def test_pictures_against_cycles(pictures: dict[str, Any], scene: str) -> None:
     result = pictures[scene]
-    lacking = ("while Max Bounces is 0", "(caustics) is blurred")
+    lacking = ("while Max Bounces is 0", "(caustics) is blurred", "spreads light as since Blender 4")
     assert [line for line in result["messages"] if not line.endswith(lacking)] == []
     image, reference = read_exr(result["SHLIGHT"]), read_exr(result["CYCLES"])
     assert image.shape == reference.shape
     ratio, mse = mean_ratio(image, reference), rel_mse(image, reference)
     print(f"mean {100 * (ratio - 1):+.3f} %, relMSE {mse:.2e}")
-    assert abs(ratio - 1.0) <= 5e-3
+    assert abs(ratio - 1.0) <= (4e-2 if scene == "several_bounces" else 5e-3)  # 0.14 of GGX alone
     assert mse <= 1e-2
 
 

@@ -8,11 +8,13 @@ from typing import TypedDict
 from shlight import nodes
 from shlight.nodes import Shader, Vector
 from shlight.nodes.films import LEAST_THICKNESS
-from shlight.nodes.principled import Distribution, aspect_stretch, stretched
+from shlight.nodes.inputs import towards_viewer
+from shlight.nodes.principled import Distribution, aspect_stretch, dielectric_bounces, mean_roughness, stretched
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
 from ..compat import (
+    BOUNCES_ARE_DIMMED,
     DIFFUSE_KEEPS_ENERGY,
     FRESNEL_MODEL,
     PRINCIPLED_IS_LAYERED,
@@ -109,9 +111,6 @@ def _read_layered(inputs: NodeInputs) -> Shader:
 
 
 def _read_sum(inputs: NodeInputs) -> Shader:
-    if inputs.node.distribution == "MULTI_GGX":
-        text = "distribution MULTI_GGX is not supported in this version of Blender; GGX is used"
-        inputs.remark(text, Effect.SLIGHT)
     base = positive(inputs.color("Base Color"))
     metallic = clamp(inputs.number("Metallic"))
     if metallic.constant != 0.0:
@@ -142,7 +141,16 @@ def _read_sum(inputs: NodeInputs) -> Shader:
     if not (specular.constant == 0.0 and metallic.constant == 0.0):
         share, turns = inputs.number("Anisotropic"), inputs.number("Anisotropic Rotation")
         stretch = aspect_stretch(roughness, share, turns, _tangent(inputs), n)
-        lobes = (Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n))
+        several = inputs.node.distribution == "MULTI_GGX"
+        own = color(1.0)
+        if several:
+            _remark_several_bounces(inputs)
+            cosine = clamp(dot(towards_viewer(), n), 1e-4)
+            own = dielectric_bounces(mean_roughness(roughness, stretch), cosine, f0, ior)
+        lobes = (
+            Lobe("ggx", color(own * f0), width, n, several_bounces=several),
+            *nodes.rising_lobes(own * (1.0 - f0), ior, width, n, several_bounces=several),
+        )
         surface += Shader(stretched(lobes, stretch)) * (1.0 - through)
     if coat.constant != 0.0:
         coat_at = inputs.linked_vector("Clearcoat Normal")
@@ -235,6 +243,11 @@ class _Anisotropy(TypedDict, total=False):
     tangent: Vector
 
 
+def _remark_several_bounces(inputs: NodeInputs) -> None:
+    """Of versions that followed light from microfacet to microfacet."""
+    inputs.remark("Multiscatter GGX spreads light as since Blender 4", Effect.SLIGHT)
+
+
 def _microfacets(inputs: NodeInputs) -> _Microfacets:
     own = inputs.node.distribution
     distribution: Distribution = DISTRIBUTIONS.get(own, "ggx")
@@ -260,7 +273,15 @@ def _roughness(inputs: NodeInputs) -> Value:
 
 def _glossy(inputs: NodeInputs) -> Shader:
     inputs.remark_nothing_reflected()
-    return nodes.glossy(inputs.color("Color"), _roughness(inputs), **_microfacets(inputs), **_anisotropy(inputs))
+    tint, roughness = inputs.color("Color"), _roughness(inputs)
+    rest, stretch = _microfacets(inputs), _anisotropy(inputs)
+    whole = nodes.glossy(tint, roughness, **rest, **stretch)
+    if not (BOUNCES_ARE_DIMMED and rest["several_bounces"]):
+        return whole
+    _remark_several_bounces(inputs)
+    rest["several_bounces"] = False
+    share = Color(*(clamp(c) for c in tint))
+    return whole * share + nodes.glossy(tint, roughness, **rest, **stretch) * (1.0 - share)
 
 
 def _metallic(inputs: NodeInputs) -> Shader:

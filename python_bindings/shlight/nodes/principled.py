@@ -150,6 +150,13 @@ def bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
     return _brighter(energy.albedo(roughness, cosine), energy.mean_albedo(roughness), mean_fresnel)
 
 
+def dielectric_bounces(roughness: Value, cosine: Value, f0: Color, ior: Value) -> Color:
+    """The same of a lobe that reflects f0 along the normal, and rises to 1 as an interface of this index does."""
+    mean = (ior - 1.0) / (4.08567 + 1.00071 * ior)
+    base = head_on(ior)
+    return bounces(roughness, cosine, mixed(f0, 1.0, clamp((mean - base) / (1.0 - base))))
+
+
 def _brighter(own: Value, mean: Value, mean_fresnel: Color) -> Color:
     """own, mean: shares of light that are not lost, at the view and on average."""
     again = mean_fresnel * mean / (1.0 - mean_fresnel * (1.0 - mean))
@@ -216,10 +223,7 @@ def _dielectric(
     own = color(weight * 1.0)
     dimmed = color(1.0)
     if several_bounces:
-        mean = (ior - 1.0) / (4.08567 + 1.00071 * ior)
-        base = head_on(ior)
-        mean_fresnel = mixed(f0, 1.0, clamp((mean - base) / (1.0 - base)))
-        brighter = bounces(roughness, cosine, mean_fresnel)
+        brighter = dielectric_bounces(roughness, cosine, f0, ior)
         own = color(own * brighter)
         dimmed = color(brighter * energy.albedo(roughness, cosine))
     reflected = mixed(f0, 1.0, energy.rise(roughness, cosine, ior))
