@@ -47,6 +47,15 @@ def test_normals_on_the_back_of_their_faces(studio: Any, turn: float, mirror: in
         assert np.abs(image - reference).mean() <= 5e-3
 
 
+def test_normals_of_a_stretched_object(studio: Any) -> None:
+    """A few smooth faces, whose normals Cycles interpolates in the world unless the mesh has instances."""
+    studio.ball(material=studio.material("ShaderNodeBsdfAnisotropic", Roughness=0.5), rings=4, scale=(0.5, 0.5, 2))
+    studio.camera((0, -6, 1), (0, 0, 0))
+    studio.lamp("SUN", 3, (2, -2, 2), angle=0.1, rotation_euler=(0.9, 0.2, 0.4))
+    studio.scene.cycles.samples = 512
+    studio.compare(mean=3e-3, error=1e-3)
+
+
 @pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="not known of these versions")
 def test_a_vertex_keeps_one_normal_at_an_edge_of_three_faces(studio: Any) -> None:
     """A wall on a floor, all smooth. The floor's far edge is sharp, so that its corners have normals of their own.

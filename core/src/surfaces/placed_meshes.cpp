@@ -16,6 +16,13 @@
 namespace shlight {
 namespace {
 
+bool stretches(const glm::dmat3& linear) {
+    constexpr double kRounding = 1e-6;
+    const glm::dmat3 squares = glm::transpose(linear) * linear;
+    const double square = squares[0][0];
+    return inf_norm(squares - square * glm::dmat3(1)) > kRounding * square;
+}
+
 Placement place(std::uint32_t mesh, std::uint32_t number, std::uint32_t first_material, const glm::dmat4& to_world,
                 bool baked) {
     const glm::dmat3 linear(to_world);
@@ -23,6 +30,7 @@ Placement place(std::uint32_t mesh, std::uint32_t number, std::uint32_t first_ma
             number,
             first_material,
             baked,
+            baked && stretches(linear),
             glm::determinant(linear) < 0,
             to_world,
             glm::inverse(to_world),
@@ -39,6 +47,18 @@ glm::dmat3 normals_to_world(const Placement& placement) {
 
 std::array<double, 3> weights_of(const RayHit& hit) {
     return {1.0 - hit.u - hit.v, hit.u, hit.v};
+}
+
+/// The normal between those of a triangle's corners, of any length.
+Vec3d between(std::array<Vec3d, 3> normals, const std::array<double, 3>& weights, const Placement& placement) {
+    const glm::dmat3 to_world = normals_to_world(placement);
+    if (!placement.stretched) {
+        return to_world * weighted(normals, weights);
+    }
+    for (Vec3d& own : normals) {
+        own = glm::length(own) * normalized_or(to_world * own, Vec3d(0));
+    }
+    return weighted(normals, weights);
 }
 
 /// Numbers of matrices are counted row by row; the last column holds the translation.
@@ -141,7 +161,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     }
     Vec3d shading = geometric;
     if (const auto normals = corner_normals(hit)) {
-        shading = normalized_or(normals_to_world(placement) * weighted(*normals, weights), geometric);
+        shading = normalized_or(between(*normals, weights, placement), geometric);
         const bool turned =
             mesh_of(placement).turns_normals ? glm::dot(shading, geometric) < 0 : clockwise != placement.mirrored;
         if (turned) {

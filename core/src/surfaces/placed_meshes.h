@@ -67,7 +67,10 @@ struct Placement {
     std::uint32_t mesh, number;    // number: of the mesh's instances
     std::uint32_t first_material;  // number of the mesh's first material in the scene
     bool baked;                    // the mesh's vertices are in the world frame
-    bool mirrored;                 // it shows its front where its corners, in the world, run clockwise
+    // It is baked, and a transform that stretches one axis more would weigh its normals otherwise: they are
+    // interpolated in the world, as those of Cycles' meshes without instances.
+    bool stretched;
+    bool mirrored;  // it shows its front where its corners, in the world, run clockwise
     glm::dmat4 to_world;
     glm::dmat4 to_object;
     double condition;  // how much a ray's rounding grows on its way through the instance's frame
