@@ -62,7 +62,7 @@ PRINCIPLED_IS_LAYERED = IS_BLENDER_4
 THIN_FILM_MODEL: Literal["spectral", "gaussians"] = "spectral" if VERSION >= (5, 0, 0) else "gaussians"
 # Fresnel's curve of metals by name of `nodes.conductor`.
 FRESNEL_MODEL: Literal["exact", "large_index"] = "exact" if VERSION >= (5, 0, 0) else "large_index"
-# What microfacets of a Glossy BSDF reflect of each other has its colour once more.
+# The colour of a Glossy BSDF dims what its microfacets reflect of each other once more.
 BOUNCES_ARE_DIMMED = not IS_BLENDER_4
 # Rough diffuse surfaces return the light that the first bounce loses.
 DIFFUSE_KEEPS_ENERGY = VERSION >= (4, 3, 0)
