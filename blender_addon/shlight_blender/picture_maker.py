@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,8 @@ from .passes import denoised, with_features
 from .record import status_of
 
 LONGEST_WAIT = 5.0  # seconds, for a thread that is to end
+WAITING = "Waits for the render"
+LOOK_SECONDS = 0.1  # between looks whether it still does
 LARGEST = 65504.0  # of the half floats that a graphics card keeps
 
 
@@ -47,9 +49,9 @@ class Job:
 class PictureMaker:
     """A thread that makes the picture of the job it was given last."""
 
-    def __init__(self, redraw: Callable[[], None]) -> None:
-        """redraw: called from the thread when there is a new picture."""
-        self._redraw = redraw
+    def __init__(self, redraw: Callable[[], None], waits: Callable[[], bool] = lambda: False) -> None:
+        """redraw: called from the thread when there is a new picture. waits: whether something else needs the cores."""
+        self._redraw, self._waits = redraw, waits
         self._changed = threading.Condition()
         self._job: Job | None = None
         self._number = 0  # of the job; a picture of another is out of date
@@ -86,7 +88,8 @@ class PictureMaker:
     def _run(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._ended or self._job is not None)
+                while not self._ended and (self._job is None or self._waits()):
+                    self._changed.wait(None if self._job is None else LOOK_SECONDS)
                 job, number, self._job = self._job, self._number, None
             if self._ended or job is None:
                 return
@@ -108,7 +111,7 @@ class PictureMaker:
             return True
 
         def goes_on(share: float) -> bool:
-            return number == self._number
+            return number == self._number and not self._waits()
 
         try:
             result = shlight.render(
@@ -127,8 +130,18 @@ class PictureMaker:
                 layers = denoised(layers, "fast", job.settings["threads"], goes_on)
             show(layers["combined"], "", None if job.factors is None else LightMix(layers, job.factors))
         except shlight.RenderCancelled:
-            pass
+            self._keep(job, number)
         except Exception as error:
             if number == self._number:
                 self.error = f"{type(error).__name__}: {error}"
                 self._redraw()
+
+    def _keep(self, job: Job, number: int) -> None:
+        """Makes the picture of a job that had to wait later, unless another has come."""
+        with self._changed:
+            if number != self._number:
+                return
+            self._job = job
+            if self.picture is not None:
+                self.picture = replace(self.picture, status=WAITING)
+        self._redraw()

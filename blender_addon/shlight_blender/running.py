@@ -37,6 +37,15 @@ class Renders:
         """The job has begun in this thread."""
         self._thread = threading.get_ident()
 
+    @property
+    def is_running(self) -> bool:
+        return self._thread is not None
+
+    def look(self) -> None:
+        """Ends a job of whose end Blender has not told; called by the main thread while no operator renders."""
+        if self.is_running and not bpy.app.is_job_running("RENDER"):
+            self.end()
+
     def end(self) -> None:
         """The job has ended."""
         with self._changed:

@@ -20,6 +20,7 @@ from .frame import Frame, frame_of
 from .light_mix import Factors, factors_of
 from .picture_maker import LARGEST, Job, Picture, PictureMaker
 from .report import ExportError
+from .running import renders
 from .windows import redraw
 
 Matrix = NDArray[np.float64]
@@ -139,7 +140,7 @@ class RenderedViewport:
         from .export import ExportedScene, everything
 
         self._engine = weakref.ref(engine)
-        self._maker = PictureMaker(self._redraw)
+        self._maker = PictureMaker(self._redraw, lambda: renders.is_running)
         self._exported = ExportedScene()
         self._changes = everything()  # that have not been exported
         self._shown: tuple[Any, ...] = ()  # what the picture depends on beside the scene
@@ -164,6 +165,7 @@ class RenderedViewport:
 
     def draw(self, context: Any, depsgraph: Any) -> None:
         """Draws the newest picture, and has another one made if the view has changed."""
+        renders.look()
         needed, factors = self._needed(context, depsgraph), factors_of(depsgraph.scene)
         view_changed, mix_changed = needed != self._shown, self._factors_for(factors, needed) != self._factors
         if self._changes and (view_changed or not self._error):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 import shlight
 from shlight.metrics import rel_mse
 from shlight_blender.export import export_scene, viewport_settings, whole_frame
-from shlight_blender.picture_maker import Job, PictureMaker
+from shlight_blender.picture_maker import WAITING, Job, PictureMaker
 
 needs_denoiser = pytest.mark.skipif(not shlight.has_denoiser(), reason="this Blender has no Open Image Denoise")
 
@@ -43,6 +44,35 @@ def test_a_render_is_denoised_where_its_scene_says_so(studio: Any) -> None:
     reference = studio.render("SHLIGHT")
     assert rel_mse(made, reference) <= 0.4 * rel_mse(noisy, reference)
     assert studio.messages(most=99) == []
+
+
+def test_a_viewport_waits_for_a_render(studio: Any) -> None:
+    """It keeps what it has, and goes on when the render has ended."""
+    build(studio)
+    scene, frame = export_scene(bpy.context.evaluated_depsgraph_get()).scene, whole_frame(320, 240)
+    settings = viewport_settings(studio.scene) | {"noise_threshold": 0.0, "max_samples": 64}
+    waits, shown = threading.Event(), list[Any]()
+
+    def redraw() -> None:
+        shown.append(maker.picture)
+        if len(shown) == 1:
+            waits.set()
+
+    def is_shown(status: str) -> bool:
+        until = time.monotonic() + 60
+        while not (shown and shown[-1].status == status) and time.monotonic() < until:
+            time.sleep(0.01)
+        return bool(shown[-1].status == status)
+
+    maker = PictureMaker(redraw, waits.is_set)
+    maker.start(Job(scene, frame, settings))
+    assert is_shown(WAITING)
+    count = len(shown)
+    time.sleep(0.5)
+    assert len(shown) == count
+    waits.clear()
+    assert is_shown("")
+    maker.end()
 
 
 @needs_denoiser
