@@ -10,7 +10,7 @@ import numpy as np
 
 from shlight.nodes.inputs import normal, towards_viewer
 from shlight.nodes.principled import reflecting_normal
-from shlight.nodes.shader import Lobe, Shader
+from shlight.nodes.shader import Lobe, Shader, ggx
 from shlight.nodes.subsurface import subsurface
 from shlight.nodes.values import (
     Number,
@@ -83,13 +83,12 @@ def disney_clearcoat(weight: Number, roughness: Number, *, at: Vector | None = N
     alpha = maximum(alpha * alpha, COAT_ALPHA)
     share = reflectance(weight, "weight") * 0.25
     cosine = clamp(dot(towards_viewer(), n), 0.01)
-    lobes = []
+    coat = Shader()
     for node, part in zip(*np.polynomial.legendre.leggauss(4), strict=True):
         width = alpha ** (0.5 - 0.5 * float(node))
         own = share * (_masked(width, cosine) / _masked(number(0.25), cosine) * (0.5 * float(part)))
-        lobes.append(Lobe("ggx", color(own * COAT_F0), width, n))
-        lobes.append(Lobe("ggx_dielectric", color(own * (1.0 - COAT_F0)), width, n, 1.5))
-    return Shader(tuple(lobes))
+        coat += ggx(sqrt(width), COAT_F0, ior=1.5, normal=n) * own
+    return coat
 
 
 def _masked(alpha: Value, cosine: Value) -> Value:
