@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scene_cases import FACES, FLOOR, from_above, lit_floor
 
 import shlight
+from shlight import nodes
 from shlight_tools import methods
 from shlight_tools.bench.picture_scenes import lamp_at
 from shlight_tools.charts.scenes import ball
@@ -224,6 +225,31 @@ def test_the_noise_that_is_told_goes_down() -> None:
     known = [noise for noise in told if noise > 0]
     assert len(known) > 3
     assert all(after <= 4 / 3 * before for before, after in itertools.pairwise(known))
+
+
+def error_of(image: Any, truth: Any) -> float:
+    """As a report tells it."""
+    value = np.asarray(truth[..., :3], np.float64)
+    error = np.asarray(image[..., :3], np.float64) - value
+    return float(np.sqrt((error**2 / (value**2 + 0.01 * value.mean() ** 2)).mean()))
+
+
+def test_the_noise_of_what_is_finer_than_pixels_is_told() -> None:
+    place = nodes.position()
+    wave = 5000.0 * nodes.values.operation("sine", 917.3 * place.x + 1231.7 * place.y)
+    scene = lit_floor(bsdf=nodes.lambert(wave - nodes.values.operation("floor", wave)))
+    truth = shlight.render(scene, 48, 32, pixel_samples=1024, max_samples=1024, seed=1)
+    for settings in ({"noise_threshold": 0.1}, {"pixel_samples": 64, "max_samples": 64}):
+        image = shlight.render(scene, 48, 32, **settings)  # type: ignore[arg-type]
+        assert 0.5 <= image.report.noise / error_of(image, truth) <= 1.2
+
+
+def test_the_noise_of_as_many_rays_everywhere_is_told_with_bounces() -> None:
+    scene = lit_floor()
+    scene.add_mesh([[-1, -0.5, 0.3], [1, -0.5, 0.3], [0, 1, 0.6]], [[0, 1, 2]], bsdf=shlight.Bsdf.lambert(0.5))
+    truth = shlight.render(scene, 48, 32, pixel_samples=1024, max_samples=1024, max_bounces=1, seed=1)
+    image = shlight.render(scene, 48, 32, pixel_samples=16, max_samples=16, max_bounces=1)
+    assert 0.5 <= image.report.noise / error_of(image, truth) <= 2
 
 
 MESH_ERRORS: dict[str, Any] = {

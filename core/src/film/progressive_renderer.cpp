@@ -40,6 +40,8 @@ constexpr double kBounceTimes = 2;
 constexpr double kUsualRays = 2;
 /// Share of the pixels that have no rays yet but ones that others replace, above which little is known of their noise.
 constexpr double kUnknownShare = 0.5;
+/// Of the rows and columns of pixels from which the brightness of a picture without a preview is known beforehand.
+constexpr int kBrightnessStep = 2;
 
 }  // namespace
 
@@ -65,6 +67,9 @@ void ProgressiveRenderer::run(const Watch& caller) {
     if (has_bounced) {
         follow_records();
     }
+    if (!refinement_.has_preview() && (bounces || refinement_.samples(0) > 1)) {
+        find_brightness(caller.stopped);
+    }
     const double share = bounces ? kShareOfPreview : 1;
     bool goes_on = has_first && first_pass(caller, share * time_limit());
     if (bounces && !is_left_) {
@@ -80,6 +85,29 @@ void ProgressiveRenderer::run(const Watch& caller) {
     }
     fill_unrendered();
     pass_image_.finish(picture_->settings.threads);
+}
+
+void ProgressiveRenderer::find_brightness(const Stopped& stopped) {
+    const Grid grid = {kBrightnessStep, 0};
+    const auto tiles = tiles_of(picture_->width, picture_->height, grid, 1, batch_samples_);
+    const auto task = [&](std::size_t i) {
+        const std::vector<Pixel> pixels = pixels_of(tiles[i], grid);
+        std::vector<PixelSums> sums(pixels.size());
+        std::vector<double> pass_sums(pixels.size() * pass_image_.stride());
+        PixelBatch& batch = batches_.local();
+        batch.add(pixels, {0, 1, kPreviewShadowRays, 0}, 1, sums, pass_sums);
+        batch.take_report();  // which is not of the picture's rays
+        for (std::size_t p = 0; p < pixels.size(); ++p) {
+            const auto row = static_cast<std::size_t>(pixels[p].row) * static_cast<std::size_t>(picture_->width);
+            const std::span<float> color = image_.subspan(4 * (row + static_cast<std::size_t>(pixels[p].column)), 3);
+            for (int channel = 0; channel < 3; ++channel) {
+                color[static_cast<std::size_t>(channel)] = static_cast<float>(sums[p].radiance[channel]);
+            }
+        }
+    };
+    run_job({0, tiles.size(), task}, std::numeric_limits<double>::infinity(), stopped);
+    fill_between(grid.step, picture_->width, picture_->height, picture_->settings.threads, {}, image_);
+    refinement_.set_mean(image_);
 }
 
 void ProgressiveRenderer::add_bounces(bool has_bounced, const Watch& caller) {

@@ -60,6 +60,8 @@ class ProgressiveRenderer {
     };
 
     void write_middles(const Stopped& stopped);
+    /// Draws direct light by few rays, by which errors are judged until the picture has rays of its own.
+    void find_brightness(const Stopped& stopped);
     bool first_pass(const Watch& caller, double latest);
     int widest_step() const;
     /// Makes records, and lets light bounce from now on. has_bounced: light of records that were there is in the

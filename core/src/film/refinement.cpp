@@ -34,6 +34,14 @@ constexpr double kOwnRays = 64;
 constexpr double kNoiseDecay = 1.25;
 /// The squared error of a mean, expected by that, ÷ the squared difference between the means of its two halves.
 const double kErrorByHalves = std::exp2(-1 - kNoiseDecay);
+/// That of the mean of camera rays drawn by themselves.
+constexpr double kFineErrorByHalves = 0.25;
+/// Times the error that edges explain, above which a pixel shows that it holds what is finer.
+constexpr double kMostByEdges = 3;
+/// Share of the squared error that is allowed from which on it counts as such.
+constexpr double kCountedShare = 0.1;
+/// Share of the pixels around one that show so: at an edge few do.
+constexpr float kLeastFinePixels = 0.2F;
 
 Vec3d color(std::span<const float> image, std::size_t pixel) {
     return {image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]};
@@ -100,15 +108,15 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const Vec3d variance = old_share * Vec3d(state.variance) + (1 - old_share) * sums.variance() +
                            old_share * (1 - old_share) * difference * difference;
     if (kept_samples(level) > 0) {
-        noises_[i] = merged_noise(i, level, sums, old, radiance);
+        noises_[i] = merged_noise(i, level, sums, old, radiance, variance);
     }
     LightBits visibility = state.visibility;
     visibility |= sums.visibility;
     state = {Rgb(variance), 0, static_cast<std::int16_t>(level), round_, visibility, false};
 }
 
-Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
-                                                 const Vec3d& radiance) const {
+Refinement::Noise Refinement::merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
+                                           const Vec3d& radiance, const Vec3d& variance) const {
     const double before = kept_samples(states_[pixel].level);
     const double all = samples(level);
     const Vec3d scale = radiance * radiance + least_square_;
@@ -116,7 +124,9 @@ Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, c
     const auto at_first = [&](const Vec3d& squared_error) {
         return static_cast<float>(mean(quotient(squared_error, scale)) / share);
     };
-    ShadowNoise noise = {0, 0, at_first(sums.shared_noise / (all * all)), 1};
+    Noise noise;
+    noise.shared = at_first(sums.shared_noise / (all * all));
+    noise.pixels = 1;
     if (before > 0) {
         const double factor = before * before / (all * all) * noise_share(states_[pixel].level) / share;
         noise.shared += static_cast<float>(factor * noises_[pixel].shared);
@@ -126,8 +136,16 @@ Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, c
         const Vec3d early = (before * old + sums.early) / half;
         const Vec3d late = (all * radiance - half * early) / (all - half);
         const Vec3d independent = sums.noise / (all * static_cast<double>(sums.rays));
-        noise.seen = at_first(glm::min(kErrorByHalves * (early - late) * (early - late), kMostNoise * independent));
+        const Vec3d squared_difference = (early - late) * (early - late);
+        const Vec3d by_shadows = glm::min(kErrorByHalves * squared_difference, kMostNoise * independent);
+        noise.seen = at_first(by_shadows);
         noise.independent = at_first(independent);
+        const double of_ray = mean(quotient(variance, scale));
+        const double by_camera =
+            mean(quotient(kFineErrorByHalves * squared_difference, scale)) - mean(quotient(by_shadows, scale));
+        noise.variance = static_cast<float>(of_ray);
+        noise.fine = static_cast<float>(all * by_camera - kMostByEdges * of_ray / evenness(level));
+        noise.fine_pixels = noise.fine > kCountedShare * all * good_enough_ ? 1 : 0;
     }
     return noise;
 }
@@ -201,33 +219,37 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) {
     return found;
 }
 
-double Refinement::variance_per_error(int level) const {
-    const double count = samples(level);
-    const double evenness = std::sqrt(count);
-    return count * (depth_of_field_ ? std::sqrt(evenness) : evenness);
+/// By how much camera rays that are spread evenly err less at an edge, squared, than as many drawn by themselves.
+double Refinement::evenness(int level) const {
+    const double across = std::sqrt(samples(level));
+    return depth_of_field_ ? std::sqrt(across) : across;
 }
 
-double Refinement::squared_error(double variance, int level) const {
-    return variance / variance_per_error(level);
+double Refinement::squared_error(const Causes& causes, int level) const {
+    return (causes.edges / evenness(level) + causes.fine) / samples(level) + causes.shadows * noise_share(level);
 }
 
 /// The own rays tell how the light varies; by how much less they err because they are spread, only many pixels tell.
-double Refinement::shadow_error(int column, int row, int level) const {
-    ShadowNoise sum;
-    for_each_around(column, row, kNoiseReach, [&](std::size_t i) { sum += noises_[i]; });
-    if (sum.pixels == 0) {
-        return 0;
+Refinement::Causes Refinement::causes(int column, int row, double variance) const {
+    Noise around;
+    for_each_around(column, row, kNoiseReach, [&](std::size_t i) { around += noises_[i]; });
+    if (around.pixels == 0) {
+        return {variance, 0, 0};
     }
-    const std::size_t i = index(column, row);
-    const double own = sum.independent > 0 ? noises_[i].independent * sum.seen / sum.independent : 0.0F;
-    const double own_share = kept_samples(states_[i].level) / (kept_samples(states_[i].level) + kOwnRays);
-    const double of_first = own_share * own + ((1 - own_share) * sum.seen + sum.shared) / sum.pixels;
-    return of_first * noise_share(level);
+    const std::size_t pixel = index(column, row);
+    const double rays = kept_samples(states_[pixel].level);
+    const double own_share = rays / (rays + kOwnRays);
+    const bool is_fine = around.fine > 0 && around.fine_pixels > kLeastFinePixels * around.pixels;
+    const double fine_share = is_fine ? std::min(around.fine / around.variance, 1.0F) : 0.0F;
+    const double fine = fine_share * (own_share * variance + (1 - own_share) * around.variance / around.pixels);
+    const double own = around.independent > 0 ? noises_[pixel].independent * around.seen / around.independent : 0.0F;
+    const double shadows = own_share * own + ((1 - own_share) * around.seen + around.shared) / around.pixels;
+    return {variance, fine, shadows};
 }
 
-int Refinement::sufficient_level(double variance) const {
+int Refinement::sufficient_level(const Causes& causes) const {
     int level = least_level_;
-    while (level < most_level_ && (good_enough_ == 0 || squared_error(variance, level) > good_enough_)) {
+    while (level < most_level_ && (good_enough_ == 0 || squared_error(causes, level) > good_enough_)) {
         ++level;
     }
     return level;
@@ -246,14 +268,14 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     if (least_square_ > 0) {  // or else the picture is black
         variance = std::max(variance, mean(Vec3d(state.variance) / scale));
     }
-    variance += shadow_error(column, row, level) * variance_per_error(level);
-    const int enough = std::max(sufficient_level(variance), level);
+    const Causes all = causes(column, row, variance);
+    const int enough = std::max(sufficient_level(all), level);
     // One ray knows nothing of its pixel, and what is known to need more need not be supposed to.
     if ((enough == level || level == 0) && good_enough_ > 0 && least_square_ > 0) {
         // The less likely the more rays have missed it, unless what is out of focus is as thin everywhere.
         const double missed = depth_of_field_ ? 1 : std::max(samples(level) / kMissingRays, 1.0);
-        supposed =
-            squared_error(neighbours_variance(column, row, scale, image), level) * kNeighbourShare / (missed * missed);
+        supposed = squared_error({neighbours_variance(column, row, scale, image)}, level) * kNeighbourShare /
+                   (missed * missed);
     }
     bool is_one_enough = false;
     if (state.level < 0) {
@@ -263,7 +285,7 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
         is_one_enough = between >= supposed && penumbrae(column, row) == 0;
     }
     const int next = enough > level || supposed > good_enough_ ? std::min(level + 1, most_level_) : enough;
-    return {enough, is_one_enough ? 0 : next, squared_error(variance, level), supposed};
+    return {enough, is_one_enough ? 0 : next, squared_error(all, level), supposed};
 }
 
 float Refinement::most_by_path(int column, int row, int level, std::span<const float> image) const {

@@ -36,6 +36,8 @@ class Refinement {
     /// Merges the rays that take a pixel to a level into its mean, alpha and variance. Other pixels may be merged at
     /// the same time.
     void merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image);
+    /// Judges errors beside the mean of a picture, until next_round() has another.
+    void set_mean(std::span<const float> image);
     /// Pixels that need more rays, those with the fewest first; empty if none does. threads: see RenderSettings. Throws
     /// RenderCancelled once stopped.
     std::vector<RefinementGroup> next_round(std::span<const float> image, int threads, const Stopped& stopped);
@@ -61,21 +63,33 @@ class Refinement {
     int most_level() const { return most_level_; }
 
   private:
-    /// Squared relative errors of a pixel's mean by shadow rays, scaled to what they would be at level 0, so that those
-    /// of pixels at any level add up; or such sums.
-    struct ShadowNoise {
-        float seen = 0;         // as the pixel's rays show them
+    /// Squared relative errors of a pixel's mean; or sums of them. Scaled to one camera ray, or by shadow rays to what
+    /// they would be at level 0, so that those of pixels at any level add up.
+    struct Noise {
+        float seen = 0;         // by shadow rays, as the pixel's rays show them
         float independent = 0;  // as they would be if each ray were drawn by itself
         float shared = 0;       // the part that its camera rays have in common, which adds to the first
         float pixels = 0;       // with rays that count
+        float variance = 0;     // of one camera ray
+        float fine = 0;         // that as the rays show it, beyond what edges explain
+        float fine_pixels = 0;  // in which the rays show anything beyond that
 
-        ShadowNoise& operator+=(const ShadowNoise& other) {
+        Noise& operator+=(const Noise& other) {
             seen += other.seen;
             independent += other.independent;
             shared += other.shared;
             pixels += other.pixels;
+            variance += other.variance;
+            fine += other.fine;
+            fine_pixels += other.fine_pixels;
             return *this;
         }
+    };
+    /// Where a pixel's squared relative error comes from.
+    struct Causes {
+        double edges = 0;    // variance of one camera ray; those that are spread evenly have less of it
+        double fine = 0;     // likewise, in what is finer than the rays are dense, where spreading gains nothing
+        double shadows = 0;  // squared error by shadow rays, as it would be at level 0
     };
     struct State {
         Rgb variance{0};  // of one ray, without the noise of its shadow rays
@@ -106,22 +120,21 @@ class Refinement {
     Row next_of(int row, std::span<const float> image);
     /// Whether rays of the pixel or of those around it were merged since the last round.
     bool is_touched(int column, int row) const;
-    void set_mean(std::span<const float> image);
-    /// Returns the pixel's noise with these rays. old, radiance: its colour before and with them.
-    ShadowNoise merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
-                             const Vec3d& radiance) const;
+    /// Returns the pixel's noise with these rays. old, radiance: its colour before and with them; variance: with them.
+    Noise merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old, const Vec3d& radiance,
+                       const Vec3d& variance) const;
     double noise_share(int level) const { return noise_shares_[static_cast<std::size_t>(level)]; }
     Wanted wanted(int column, int row, std::span<const float> image) const;
-    double variance_per_error(int level) const;
-    double squared_error(double variance, int level) const;
-    int sufficient_level(double variance) const;
+    double evenness(int level) const;
+    double squared_error(const Causes& causes, int level) const;
+    int sufficient_level(const Causes& causes) const;
     /// Lights, as in LightBits, that shadow rays from the pixel and those around it disagree about; one that has no
     /// rays of its own, or only a replaced one, looks farther.
     std::uint32_t penumbrae(int column, int row) const;
     /// Squared, of what is shown of a pixel that has no rays, if it is as one beside it.
     double error_between(int column, int row, std::span<const float> image) const;
-    /// Squared error that shadow rays leave at a level, by those of the pixel and of all around it.
-    double shadow_error(int column, int row, int level) const;
+    /// By the noise of the pixel and of those around it. variance: of one camera ray.
+    Causes causes(int column, int row, double variance) const;
     /// So much that a ray brings its pixel, at this level, no more light than there is around it already.
     float most_by_path(int column, int row, int level, std::span<const float> image) const;
     double neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const;
@@ -137,7 +150,7 @@ class Refinement {
     std::uint16_t round_ = 0;           // which merges since the last call of next_round() belong to
     std::vector<double> noise_shares_;  // what each level leaves of shadow rays' squared error at level 0
     std::vector<State> states_;
-    std::vector<ShadowNoise> noises_;  // of each pixel; apart, as most reads are of these alone
+    std::vector<Noise> noises_;  // of each pixel; apart, as most reads are of these alone
 };
 
 }  // namespace shlight
