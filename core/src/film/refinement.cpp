@@ -41,7 +41,7 @@ constexpr double kMostByEdges = 3;
 /// Share of the squared error that is allowed from which on it counts as such.
 constexpr double kCountedShare = 0.1;
 /// Share of the pixels around one that show so: at an edge few do.
-constexpr float kLeastFinePixels = 0.2F;
+constexpr float kLeastFinePixels = 0.3F;
 
 Vec3d color(std::span<const float> image, std::size_t pixel) {
     return {image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]};
