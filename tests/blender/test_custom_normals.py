@@ -6,9 +6,13 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
+
+from shlight_blender.compat import mesh_triangles, uv_coordinates
+from shlight_blender.export.triangle_geometry import triangle_tangents
 
 SHADERS = ("ShaderNodeBsdfDiffuse", "ShaderNodeBsdfPrincipled")
 # The cases that run without `--all`: each pair of a turn, a shader and a light.
@@ -75,3 +79,57 @@ def test_a_vertex_keeps_one_normal_at_an_edge_of_three_faces(studio: Any) -> Non
     studio.camera((0.5, -7, 6), (0.5, 0, 0))
     studio.scene.cycles.samples = 512
     studio.compare(mean=5e-3, error=1e-3)
+
+
+def normal_mapped(studio: Any) -> Any:
+    material = studio.material()
+    bent = material.node_tree.nodes.new("ShaderNodeNormalMap")
+    bent.inputs["Color"].default_value = (0.85, 0.4, 0.9, 1.0)
+    material.node_tree.links.new(bent.outputs["Normal"], material.node_tree.nodes["Diffuse BSDF"].inputs["Normal"])
+    return material
+
+
+def cap(studio: Any, material: Any) -> None:
+    """A hexagon with a skirt, smooth and with a UV map."""
+    angles = np.arange(6) * np.pi / 3
+    ring = np.stack([np.cos(angles), np.sin(angles), 0.3 * np.cos(2 * angles)], axis=1)
+    vertices = np.concatenate([ring, 1.6 * ring + (0, 0, -0.5)])
+    faces = [tuple(range(6)), *((i, i + 6, (i + 1) % 6 + 6, (i + 1) % 6) for i in range(6))]
+    mesh = studio.mesh("Cap", vertices.tolist(), faces, material).data
+    mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
+    places = vertices[[loop.vertex_index for loop in mesh.loops]]
+    mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", (places[:, :2] * (-1, 0.5)).ravel())
+
+
+@pytest.mark.parametrize("form", ["cap", "ball"])
+def test_normal_maps_of_faces_of_many_corners_and_without_a_uv_map(studio: Any, form: str) -> None:
+    """Blender gives no tangents of them, and Cycles has its own. The normals between corners differ much in length."""
+    if form == "cap":
+        cap(studio, normal_mapped(studio))
+    else:
+        studio.ball(material=normal_mapped(studio), rings=8)
+    studio.camera((0, -4, 3), (0, 0, 0))
+    studio.lamp("SUN", 3, (2, -2, 2), angle=0.1, rotation_euler=(0.6, 0.2, 0.4))
+    studio.scene.cycles.samples = 256
+    studio.compare(mean=1e-3, error=3e-4)
+
+
+def test_tangents_are_those_of_blender(studio: Any) -> None:
+    """A smooth ball in triangles, one half of whose UV map is mirrored. At the poles its folds meet."""
+    mesh = studio.ball(rings=8).data
+    form = bmesh.new()
+    form.from_mesh(mesh)
+    bmesh.ops.triangulate(form, faces=form.faces)
+    form.to_mesh(mesh)
+    x, y, z = np.array([vertex.co for vertex in mesh.vertices]).T
+    of_vertex = np.stack([np.abs(np.arctan2(y, x)), 1.3 * z], axis=1)
+    of_loop = [loop.vertex_index for loop in mesh.loops]
+    mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", of_vertex[of_loop].ravel())
+    mesh.calc_tangents()
+    expected = np.array([(*loop.tangent, loop.bitangent_sign) for loop in mesh.loops])
+    normals = np.array([loop.normal for loop in mesh.loops])
+    triangles = mesh_triangles(mesh)
+    arguments = normals[triangles.corners], uv_coordinates(mesh.uv_layers[0])[triangles.corners]
+    found = triangle_tangents(triangles.vertices, triangles.corner_vertices, *arguments)
+    is_pole = np.abs(z[triangles.corner_vertices]) > 0.99
+    np.testing.assert_allclose(found[~is_pole], expected[triangles.corners][~is_pole], atol=1e-5)

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from ..compat import Dicing
 from .camera import View
-from .mesh_arrays import MeshArrays, Undisplaced, face_normals, unit
+from .mesh_arrays import MeshArrays, Undisplaced
 from .mesh_attributes import UNDISPLACED
+from .triangle_geometry import face_normals, unit
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -30,9 +30,10 @@ from ..compat import (
 )
 from .corner_values import at_corners
 from .emission import VaryingColor
-from .mesh_arrays import MeshArrays, Undisplaced, face_normals, unit
+from .mesh_arrays import MeshArrays, Undisplaced
 from .mesh_attributes import TANGENT, UNDISPLACED, UNDISPLACED_NORMAL
 from .nodes import NodeInputs, ReadNode, TreeReader, origin
+from .triangle_geometry import face_normals, unit
 
 Array = NDArray[np.float64]
 Corners = NDArray[np.int64]  # (n,), numbered through all triangles

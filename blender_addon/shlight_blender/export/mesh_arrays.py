@@ -27,6 +27,7 @@ from ..compat import (
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .mesh_attributes import COLOR, OF_CURVES, mesh_attributes
+from .triangle_geometry import face_normals, unit
 
 Integers = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.float32]
@@ -239,7 +240,7 @@ def _mesh_arrays(mesh: Any, attribute_names: Iterable[str], displaced: bool, who
             if keeps_a_normal_per_vertex(mesh):
                 normals = as_cycles_keeps_them(_joined_by_edges(mesh), normals, triangles.corners)
             normals = _repaired(normals[triangles.corners], vertices, corner_vertices)
-    attributes = mesh_attributes(mesh, triangles, attribute_names)
+    attributes = mesh_attributes(mesh, triangles, normals, attribute_names)
     arrays = MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
     if displaced:
         arrays = _split(arrays, mesh, triangles, "" if whole else splits_vertices(mesh))
@@ -278,18 +279,3 @@ def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.i
     faces = face_normals(vertices, triangles, (0.0, 0.0, 1.0))
     repaired: FloatArray = np.where(good, normals, faces[:, None, :]).astype(np.float32)
     return repaired
-
-
-def unit(v: NDArray[np.float64], otherwise: Any) -> NDArray[np.float64]:
-    """Vectors of length 1, and others where their length is 0."""
-    length = np.linalg.norm(v, axis=-1, keepdims=True)
-    found: NDArray[np.float64] = np.where(length > 0.0, v / np.where(length > 0.0, length, 1.0), otherwise)
-    return found
-
-
-def face_normals(
-    vertices: FloatArray, triangles: NDArray[np.int32], otherwise: Sequence[float] = (1.0, 0.0, 0.0)
-) -> NDArray[np.float64]:
-    """Unit normals of triangles (k, 3); of those without area what is given, by default what Cycles takes."""
-    a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
-    return unit(np.cross(b - a, c - a), otherwise)

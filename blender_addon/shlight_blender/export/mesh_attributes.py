@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compat import Triangles, uv_coordinates, values_of
-from ..names import with_name
+from ..names import is_utf8, with_name
 from .object_values import hashed, share
+from .triangle_geometry import triangle_tangents, unit
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -23,11 +24,6 @@ def _edges(mesh: Any) -> Index:
 
 def _vectors(collection: Any, name: str) -> Array:
     return values_of(collection, name, np.float32, 3).astype(np.float64)
-
-
-def _unit(v: Array) -> Array:
-    length = np.linalg.norm(v, axis=1, keepdims=True)
-    return np.divide(v, length, out=np.zeros_like(v), where=length > 0.0)
 
 
 def pointiness(mesh: Any) -> Array:
@@ -45,9 +41,9 @@ def pointiness(mesh: Any) -> Array:
     both = np.concatenate([edges, edges[:, ::-1]])
     degree = np.bincount(both[:, 0], minlength=count)
     leaning = np.zeros((count, 3))
-    np.add.at(leaning, both[:, 0], _unit(places[both[:, 1]] - places[both[:, 0]]))
+    np.add.at(leaning, both[:, 0], unit(places[both[:, 1]] - places[both[:, 0]], 0.0))
     leaning /= np.maximum(degree, 1)[:, None]
-    cosine = np.clip((_unit(normals) * leaning).sum(axis=1), -1.0, 1.0)
+    cosine = np.clip((unit(normals, 0.0) * leaning).sum(axis=1), -1.0, 1.0)
     raw = np.where(degree > 0, np.arccos(cosine) / np.pi, 0.0)
     smooth = (raw + np.bincount(both[:, 0], weights=raw[both[:, 1]], minlength=count)) / (degree + 1)
     found: Array = smooth[one_of]
@@ -114,20 +110,22 @@ TYPES = {
 }
 
 
-def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> dict[str, FloatArray]:
+def mesh_attributes(
+    mesh: Any, triangles: Triangles, normals: FloatArray | None, names: Iterable[str]
+) -> dict[str, FloatArray]:
     """The mesh's attributes with these names, per corner of its triangles (k, 3, c).
 
-    UV is the UV map for rendering; the prefixes above name what is made of a mesh.
+    UV is the UV map for rendering; the prefixes above name what is made of a mesh. normals: as of `triangle_tangents`.
     """
-    found = {name: _attribute(mesh, triangles, name) for name in names}
+    found = {name: _attribute(mesh, triangles, normals, name) for name in names}
     return {
         name: np.ascontiguousarray(values, dtype=np.float32) for name, values in found.items() if values is not None
     }
 
 
-def _attribute(mesh: Any, triangles: Triangles, name: str) -> FloatArray | None:
+def _attribute(mesh: Any, triangles: Triangles, normals: FloatArray | None, name: str) -> FloatArray | None:
     if name.startswith(TANGENT):
-        return _tangents(mesh, triangles, _uv_layer(mesh, name.removeprefix(TANGENT)))
+        return _tangents(mesh, triangles, normals, name.removeprefix(TANGENT))
     if name.startswith(COLOR):
         return _layer(triangles, _color_layer(mesh.color_attributes, name.removeprefix(COLOR)))
     if name == GENERATED:
@@ -152,17 +150,30 @@ def _color_layer(layers: Any, name: str) -> Any:
     return with_name(layers, name) if name else layers[index] if 0 <= index < len(layers) else None
 
 
-def _tangents(mesh: Any, triangles: Triangles, layer: Any) -> FloatArray | None:
-    try:
-        if layer is None:
-            return None
-        mesh.calc_tangents(uvmap=layer.name)
-    except (RuntimeError, UnicodeDecodeError):  # faces of more than four corners, or an odd name; they have none
+def _tangents(mesh: Any, triangles: Triangles, normals: FloatArray | None, name: str) -> FloatArray | None:
+    """Those of a UV map; where there is none, that for rendering is the direction from the mesh's origin.
+
+    Blender computes them, faster, where no face has more than four corners and Python can say the map's name.
+    """
+    layer = _uv_layer(mesh, name)
+    if layer is None and name != UV:
         return None
+    has_many_corners = np.bincount(triangles.polygons).max() > 2
+    if layer is None or has_many_corners or not is_utf8(layer):
+        uvs = _on_sphere(triangles.vertices) if layer is None else uv_coordinates(layer)
+        corners = triangles.corner_vertices if layer is None else triangles.corners
+        return triangle_tangents(triangles.vertices, triangles.corner_vertices, normals, uvs[corners])
+    mesh.calc_tangents(uvmap=layer.name)
     tangents = values_of(mesh.loops, "tangent", np.float32, 3)
     signs = values_of(mesh.loops, "bitangent_sign", np.float32)
     mesh.free_tangents()
     return np.concatenate([tangents, signs[:, None]], axis=1)[triangles.corners]
+
+
+def _on_sphere(places: FloatArray) -> FloatArray:
+    x, y, z = np.moveaxis(unit(places.astype(np.float64), 0.0), -1, 0)
+    u = np.where((x == 0.0) & (y == 0.0), 0.0, 0.5 - np.arctan2(x, y) / (2.0 * np.pi))
+    return np.stack([u, 1.0 - np.arccos(np.clip(z, -1.0, 1.0)) / np.pi], axis=-1).astype(np.float32)
 
 
 def _layer(triangles: Triangles, layer: Any) -> FloatArray | None:

@@ -35,9 +35,11 @@ enum class ShaderSource : std::uint8_t {
     backfacing,         ///< 1: 1 where the triangle's corners run clockwise, else 0
     ray_length,         ///< 1: length of the ray; camera rays start at the near plane
     transparent_depth,  ///< 1: surfaces that the ray has passed through
-    height              ///< 3: of the triangle's corners above the edges opposite to them; 0 of what has none
+    height,             ///< 3: of the triangle's corners above the edges opposite to them; 0 of what has none
+    mesh_normal         ///< 3: what is interpolated between the corners' normals in the frame of the mesh, shorter than
+                        ///< these where they differ; of a flat triangle its normal, of length 1
 };
-inline constexpr int kShaderSources = 13;
+inline constexpr int kShaderSources = 14;
 /// Component of an attribute that is the mean of its RGB, or the value itself if it has one component.
 inline constexpr std::uint32_t kAttributeMean = 4;
 

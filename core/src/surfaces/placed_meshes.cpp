@@ -343,6 +343,16 @@ Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, int place, bool smooth)
     return smooth ? point.shading_normal : point.geometric_normal;
 }
 
+Vec3d PlacedMeshes::mesh_normal(const RayHit& hit, const Vec3d& normal) const {
+    const glm::dmat3 to_world = normals_to_world(placements_[hit.instance]);
+    const auto normals = corner_normals(hit);
+    const Vec3d own = normals ? weighted(*normals, weights_of(hit)) : Vec3d(0);
+    if (own == Vec3d(0)) {
+        return normalized_or(glm::inverse(to_world) * normal, normal);
+    }
+    return glm::dot(to_world * own, normal) < 0 ? -own : own;
+}
+
 float PlacedMeshes::object_value(const Placement& placement, std::uint32_t index) const {
     const std::vector<std::vector<float>>& values = mesh_of(placement).object_values;
     const bool known = placement.number < values.size() && index < values[placement.number].size();
@@ -444,6 +454,10 @@ void PlacedMeshes::read(const ShaderInput& input, const Material& material, int 
             return fill([](const ShadedPlace& shaded, const auto&) { return shaded.ray_length; });
         case ShaderSource::transparent_depth:
             return fill([](const ShadedPlace& shaded, const auto&) { return shaded.transparent_depth; });
+        case ShaderSource::mesh_normal:
+            return fill([&](const ShadedPlace& shaded, const SurfacePlace& at) {
+                return mesh_normal(at.hit, normal_at(shaded, place, true))[component];
+            });
         case ShaderSource::height:
             return fill([&](const auto&, const SurfacePlace& at) { return height(at.hit, input.component); });
     }

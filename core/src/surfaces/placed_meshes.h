@@ -131,6 +131,8 @@ class PlacedMeshes {
     Vec3d around_axis(const RayHit& hit, const Vec3d& position) const;
     /// place: see ShaderReader.
     Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;
+    /// See ShaderSource::mesh_normal. normal: that in the world.
+    Vec3d mesh_normal(const RayHit& hit, const Vec3d& normal) const;
     float object_value(const Placement& placement, std::uint32_t index) const;
     /// A number of the matrix from the mesh's frame to the world, and of its inverse, row by row.
     double to_world_number(const Placement& placement, std::uint32_t component) const;

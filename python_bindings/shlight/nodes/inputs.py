@@ -22,6 +22,7 @@ SOURCES = {
     "ray_length": 10,
     "transparent_depth": 11,
     "height": 12,
+    "mesh_normal": 13,
 }
 
 
@@ -44,9 +45,12 @@ def normal() -> Vector:
     return _vector("normal")
 
 
-def interpolated_normal() -> Vector:
-    """The smooth normal, also of a shader whose normals are bent by `Shader.with_normal`."""
-    return _vector("normal", 1)  # the core has one normal; the number tells this one from those that are bent
+def mesh_normal() -> Vector:
+    """The mean of the corners' normals by the hit's place in the mesh's frame, on the viewer's side.
+
+    Where the corners' normals differ it is shorter than these.
+    """
+    return _vector("mesh_normal")
 
 
 def geometric_normal() -> Vector:

@@ -6,9 +6,8 @@ from __future__ import annotations
 from shlight.nodes.inputs import (
     attribute,
     backfacing,
-    interpolated_normal,
+    mesh_normal,
     normal,
-    normal_to_object,
     normal_to_world,
     position,
 )
@@ -44,8 +43,8 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
     Light is not linear in normals: a lobe at their mean is not the mean of their lobes. So pictures in the colour are
     not filtered; each camera ray sees them at one point.
 
-    space: "tangent", "object" or "world". The tangent space is that of the interpolated normal, as in Cycles: where
-        Shader.with_normal bends normals, this one stays.
+    space: "tangent", "object" or "world". The tangent space is that of the mesh's normal as it is interpolated, as in
+        Cycles: where Shader.with_normal bends normals, this one stays.
     tangents: the mesh attribute of the tangent space: per corner the tangent and the bitangent's sign.
     """
     n = Vector(*on_ray(vector(color), None, filtered=False)) * 2.0 - 1.0
@@ -54,8 +53,7 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
     if space == "tangent":
         known = attribute(tangents)
         along = Vector(known.x, known.y, known.z)
-        up = normal_to_object(interpolated_normal() * flip)
-        up = normalize(up)
+        up = mesh_normal() * flip
         across = cross(up, along) * known.alpha
         height = 1.0 + clamp(s) * (n.z - 1.0)
         bent = along * (n.x * s) + across * (n.y * s) + up * height
