@@ -124,14 +124,20 @@ def image_node(tree: Any, shader: Any, image: Any) -> Any:
     return node
 
 
+def clipped(tree: Any, shader: Any, node: Any) -> None:
+    """Cycles' pixel in place of a picture fades towards its edges."""
+    node.extension = "CLIP"
+    tree.links.new(node.outputs["Alpha"], shader.inputs["Alpha"])
+
+
 def no_image(tree: Any, shader: Any) -> None:
-    image_node(tree, shader, None)
+    clipped(tree, shader, image_node(tree, shader, None))
 
 
 def missing_image(tree: Any, shader: Any) -> None:
     made = bpy.data.images.new("Gone", 1, 1)
     made.source, made.filepath = "FILE", "//gone/nowhere.png"
-    image_node(tree, shader, made)
+    clipped(tree, shader, image_node(tree, shader, made))
 
 
 def broken_image(tree: Any, shader: Any) -> None:

@@ -228,7 +228,7 @@ def test_the_noise_that_is_told_goes_down() -> None:
 
 
 def error_of(image: Any, truth: Any) -> float:
-    """As a report tells it."""
+    """The noise of an image, as a report defines it."""
     value = np.asarray(truth[..., :3], np.float64)
     error = np.asarray(image[..., :3], np.float64) - value
     return float(np.sqrt((error**2 / (value**2 + 0.01 * value.mean() ** 2)).mean()))

@@ -77,14 +77,18 @@ def _converted(source: Any, space: str) -> Any:
     return oiio.ImageBufAlgo.colorconvert(source, space, "scene_linear", unpremult=True, colorconfig=_configuration())
 
 
-# The colour that Cycles shows for a missing picture.
-MISSING = (1.0, 0.0, 1.0)
 # Files that are read at a time; each takes memory for its pixels twice.
 MOST_READERS = 4
 KEPT_EXPORTS = 2  # textures that so many exports have not asked for are dropped
 
 
 Texture: TypeAlias = "_core.TexturePixels | Future[_core.TexturePixels]"
+
+
+@cache
+def missing_texture() -> _core.TexturePixels:
+    """The pixel that Cycles shows in place of a picture, which fades towards its edges where nothing is beyond them."""
+    return texture_pixels(np.array([[(1.0, 0.0, 1.0)]], dtype=np.float32))
 
 
 class TextureCache:
@@ -119,7 +123,7 @@ class TextureCache:
                 texture = make()
             except (OSError, ValueError):
                 self._broken.add(path)
-                return texture_pixels(np.array([[MISSING]], dtype=np.float32))
+                return missing_texture()
             self._broken.discard(path)
             return texture
 

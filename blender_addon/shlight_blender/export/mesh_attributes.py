@@ -151,9 +151,9 @@ def _color_layer(layers: Any, name: str) -> Any:
 
 
 def _tangents(mesh: Any, triangles: Triangles, normals: FloatArray | None, name: str) -> FloatArray | None:
-    """Those of a UV map; where there is none, that for rendering is the direction from the mesh's origin.
+    """The tangents of a UV map. A mesh without maps has that of directions from its origin.
 
-    Blender computes them, faster, where no face has more than four corners and Python can say the map's name.
+    Blender computes them faster, where no face has more than four corners and Python can say the map's name.
     """
     layer = _uv_layer(mesh, name)
     if layer is None and name != UV:

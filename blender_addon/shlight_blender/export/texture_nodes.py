@@ -14,7 +14,15 @@ from ..names import name_of
 from ..report import Effect
 from .cell_nodes import CELL_NODES
 from .ies_node import ies_texture
-from .images import MISSING, TextureUse, associates_alpha, datablock_texture, file_texture, has_plain_file, is_known
+from .images import (
+    TextureUse,
+    associates_alpha,
+    datablock_texture,
+    file_texture,
+    has_plain_file,
+    is_known,
+    missing_texture,
+)
 from .mesh_attributes import GENERATED
 from .nodes import Expression, NodeInputs, ReadNode
 from .pattern_nodes import PATTERN_NODES
@@ -27,16 +35,13 @@ FIRST_TILE = 1001
 
 def image_texture(inputs: NodeInputs) -> Color | Value:
     """An Image Texture node."""
-    textures = _textures(inputs)
-    found = _projected(inputs, textures, inputs.vector_or("Vector", nodes.uv(""))) if textures else Color(*MISSING)
+    found = _projected(inputs, _textures(inputs), inputs.vector_or("Vector", nodes.uv("")))
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
 def environment_texture(inputs: NodeInputs) -> Color:
     """An Environment Texture node, looked up by a direction or a place."""
     textures = _textures(inputs)
-    if not textures:
-        return Color(*MISSING)
     direction = normalize(inputs.vector_or("Vector", nodes.position()))
     if inputs.node.projection == "MIRROR_BALL":
         return _lookup(inputs, textures, _on_mirror_ball(direction))
@@ -54,10 +59,10 @@ def _on_mirror_ball(direction: Vector) -> Vector:
 
 
 def _textures(inputs: NodeInputs) -> Any:
-    """The texture of a node's image, or several by tile; None without pixels, which is reported."""
+    """The texture of a node's image, or several by tile; one that is missing is reported."""
     node, image = inputs.node, inputs.node.image
     if image is None:
-        return None
+        return missing_texture()
     space = image.colorspace_settings.name
     if not is_known(space):
         inputs.remark(f"colour space {space} is unknown; taken for sRGB")
@@ -73,7 +78,7 @@ def _textures(inputs: NodeInputs) -> Any:
         found = found or datablock_texture(image, use)
     if not found:
         inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; magenta is used", Effect.THING)
-    return found or None
+    return found or missing_texture()
 
 
 def _extension(node: Any) -> str:
@@ -112,7 +117,7 @@ def _lookup(inputs: NodeInputs, textures: Any, place: Vector, *, closed: bool = 
         place,
         interpolation=INTERPOLATIONS[node.interpolation],
         extension=_extension(node),
-        unassociate=alpha_is_used and associates_alpha(node.image),
+        unassociate=alpha_is_used and (node.image is None or associates_alpha(node.image)),
         closed=closed,
     )
 

@@ -40,7 +40,7 @@ constexpr double kBounceTimes = 2;
 constexpr double kUsualRays = 2;
 /// Share of the pixels that have no rays yet but ones that others replace, above which little is known of their noise.
 constexpr double kUnknownShare = 0.5;
-/// Of the rows and columns of pixels from which the brightness of a picture without a preview is known beforehand.
+/// Rows and columns between the pixels from which the brightness of a picture without a preview is known beforehand.
 constexpr int kBrightnessStep = 2;
 
 }  // namespace

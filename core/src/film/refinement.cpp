@@ -34,7 +34,7 @@ constexpr double kOwnRays = 64;
 constexpr double kNoiseDecay = 1.25;
 /// The squared error of a mean, expected by that, ÷ the squared difference between the means of its two halves.
 const double kErrorByHalves = std::exp2(-1 - kNoiseDecay);
-/// That of the mean of camera rays drawn by themselves.
+/// The same ratio of camera rays that are drawn by themselves.
 constexpr double kFineErrorByHalves = 0.25;
 /// Times the error that edges explain, above which a pixel shows that it holds what is finer.
 constexpr double kMostByEdges = 3;
@@ -219,7 +219,8 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) {
     return found;
 }
 
-/// By how much camera rays that are spread evenly err less at an edge, squared, than as many drawn by themselves.
+/// Camera rays that are spread evenly err less at an edge than rays drawn by themselves: their squared error is divided
+/// by this.
 double Refinement::evenness(int level) const {
     const double across = std::sqrt(samples(level));
     return depth_of_field_ ? std::sqrt(across) : across;

@@ -85,7 +85,7 @@ class Refinement {
             return *this;
         }
     };
-    /// Where a pixel's squared relative error comes from.
+    /// Causes of a pixel's squared relative error.
     struct Causes {
         double edges = 0;    // variance of one camera ray; those that are spread evenly have less of it
         double fine = 0;     // likewise, in what is finer than the rays are dense, where spreading gains nothing
@@ -133,7 +133,7 @@ class Refinement {
     std::uint32_t penumbrae(int column, int row) const;
     /// Squared, of what is shown of a pixel that has no rays, if it is as one beside it.
     double error_between(int column, int row, std::span<const float> image) const;
-    /// By the noise of the pixel and of those around it. variance: of one camera ray.
+    /// The noise of the pixel and of those around it tells the causes. variance: of one camera ray.
     Causes causes(int column, int row, double variance) const;
     /// So much that a ray brings its pixel, at this level, no more light than there is around it already.
     float most_by_path(int column, int row, int level, std::span<const float> image) const;
