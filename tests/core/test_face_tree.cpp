@@ -128,8 +128,8 @@ TEST(FaceSum, IsTheSumOverAllFacesWithinItsTolerance) {
                 const LobeShape& lobe = kLobes[static_cast<std::size_t>(i) % kLobes.size()];
                 std::vector<NearFace> near;
                 std::array<SummedLobe, 1> summed = {{{lobe, 1}}};
-                sum.add_up(faces, view.to_viewer, view.frame, faces.viewpoint(view.frame, 0).front_only, tolerance, 0,
-                           summed, near);
+                sum.add_up(faces, view.to_viewer, view.frame, faces.viewpoint(view.frame, 0), tolerance, 0, summed,
+                           near);
                 const Vec3d found = summed[0].light;
                 const Vec3d truth = brute_force(all[e], lobe, view);
                 if (truth.y < 1e-3) {

@@ -11,6 +11,7 @@ import shlight
 from shlight import nodes
 from shlight.metrics import mean_ratio, rel_mse
 from shlight_tools.bench.lamps import CENTER, RADIANCE, RADIUS, ball_on_floor, icosphere, under_mesh
+from shlight_tools.charts.scenes import ball
 
 
 def of_equal_area(subdivisions: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -93,3 +94,29 @@ def test_a_ring_of_negative_radiance_takes_light_away() -> None:
     more, none, less = images
     assert (more - none).mean() >= 0.01 * none.mean()
     np.testing.assert_allclose(none - less, more - none, atol=3e-3 * none.mean())
+
+
+def dome(side: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A sheet that bends away from +z everywhere."""
+    x, y = np.meshgrid(*[np.linspace(-1.0, 1.0, side + 1)] * 2)
+    vertices = np.stack([x, y, -(x**2 + y**2) / 4], axis=-1).reshape(-1, 3)
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    lower, upper = (first, first + 1, first + side + 2), (first, first + side + 2, first + side + 1)
+    return vertices, np.concatenate([np.stack(lower, axis=1), np.stack(upper, axis=1)])
+
+
+@pytest.mark.parametrize("form", ["dome", "uneven ball"])
+def test_a_surface_that_bends_away_throws_no_light_on_itself(form: str) -> None:
+    """With all of it near, rounding must not put a face before the point that lies on it."""
+    if form == "uneven ball":
+        made = ball((0.3, 0.1, -0.2), 1.0)
+        vertices, faces = made.vertices, made.triangles
+    else:
+        vertices, faces = dome(5)
+    scene = shlight.Scene()
+    scene.add_mesh(vertices, faces, emission=(2.0, 2.0, 2.0))
+    a, b, c = np.moveaxis(np.asarray(vertices)[np.asarray(faces)[::7]], 1, 0)
+    normals = np.cross(b - a, c - a)
+    has_area = np.linalg.norm(normals, axis=-1) > 1e-9
+    found = scene.irradiance(((a + b + c) / 3)[has_area], normals[has_area], rays=16)
+    assert np.abs(found).max() <= 1e-3  # of 2π if all above shone

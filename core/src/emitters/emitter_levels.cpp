@@ -133,7 +133,7 @@ bool is_convex(const IndexedMesh& mesh) {
 
 /// Removes faces until about that many are left, and adds to the error; returns false with the mesh unchanged if that
 /// would tear or deform it.
-bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) {
+bool simplify(IndexedMesh& mesh, std::size_t faces, double& error) {
     std::vector<float> positions;
     for (const Vec3d& v : mesh.vertices) {
         // Relative to the first vertex, because float has few digits for the shape far from the world's origin.
@@ -156,7 +156,7 @@ bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) 
         triangles.emplace_back(kept[i], kept[i + 1], kept[i + 2]);
     }
     IndexedMesh simple = welded(mesh.vertices, triangles, kWelded);
-    if (2 * simple.faces.size() > mesh.faces.size() || simple.faces.empty() || has_border(edges_of(simple)) == closed) {
+    if (2 * simple.faces.size() > mesh.faces.size() || simple.faces.empty() || has_border(edges_of(simple))) {
         return false;
     }
     error += static_cast<double>(relative) *
@@ -322,17 +322,19 @@ EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<con
     end_if(stopped);
     emitter.convex = emitter.closed && is_convex(mesh);
     end_if(stopped);
+    if (!emitter.convex) {
+        return emitter;
+    }
     double error = 0;
     if (mesh.faces.size() > kMostFaces) {
-        simplify(mesh, kMostFaces, whole, error);
+        simplify(mesh, kMostFaces, error);
     }
     do {
         end_if(stopped);
         IndexedMesh level = mesh;
         scale(level, emitter.center, std::sqrt(emitter.area / area(level)));
         emitter.levels.push_back(level_of(std::move(level), error));
-    } while (emitter.convex && mesh.faces.size() / kReduction >= least_faces &&
-             simplify(mesh, mesh.faces.size() / kReduction, whole, error));
+    } while (mesh.faces.size() / kReduction >= least_faces && simplify(mesh, mesh.faces.size() / kReduction, error));
     return emitter;
 }
 

@@ -62,7 +62,7 @@ struct EmitterLevel {
 
 /// A surface that emits to both sides, or to that of its normals, in the world frame.
 struct EmitterLevels {
-    std::vector<EmitterLevel> levels;  ///< from fine to coarse; one of a surface that is not convex
+    std::vector<EmitterLevel> levels;  ///< from fine to coarse; none of a surface that is not convex
     bool one_sided;
     bool turned;    ///< the given mesh is wound the other way
     bool closed;    ///< encloses a volume, and is wound so that its normals point out of it
@@ -86,7 +86,7 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 /// Equal vertices are joined, and triangles without area left out. The finest level has at most some 5000 faces, each
 /// one after it about a quarter of those of the one before, down to `least_faces`; all are scaled to the area of the
 /// given mesh: a closed surface shows a quarter of its area on average (Cauchy), so that no level is brighter.
-/// A closed surface that is not one-sided may be wound either way. No levels if no triangle has an area. Throws
+/// A closed surface that is not one-sided may be wound either way. The area is 0 if no triangle has one. Throws
 /// RenderCancelled once it is to end.
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                                   std::size_t least_faces, const Stopped& stopped = {}, bool one_sided = false);

@@ -104,22 +104,29 @@ void FaceSum::refine(std::vector<NearFace>& near, double tolerance, double absol
 }
 
 void FaceSum::add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const {
-    const double height = -glm::dot(glm::cross(face.b - face.a, face.c - face.a), face.a - frame_->origin);
+    const Vec3d normal = glm::cross(face.b - face.a, face.c - face.a);
+    const double height = -glm::dot(normal, face.a - frame_->origin);
+    // The face that was hit, and others in its plane, would cover half of space or nothing, as rounding has it.
+    if (!(std::abs(height) > clearance_ * glm::length(normal))) {
+        return;
+    }
     const std::array<Vec3d, 3> corners = {frame_->point_to_local(face.a), frame_->point_to_local(face.b),
                                           frame_->point_to_local(face.c)};
     const bool rises = std::ranges::any_of(corners, [](const Vec3d& corner) { return corner.z > 0; });
-    if (rises && (front_only_ ? height > 0 : height != 0)) {
+    if (rises && (height > 0 || !front_only_)) {
         near.push_back({corners, face.radiance});
     }
 }
 
-void FaceSum::add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only,
-                     double tolerance, double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near) {
+void FaceSum::add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame,
+                     const FaceViewpoint& viewpoint, double tolerance, double absolute, std::span<SummedLobe> lobes,
+                     std::vector<NearFace>& near) {
     faces_ = &faces;
     frame_ = &frame;
     lobes_ = lobes;
     view_ = view;
-    front_only_ = front_only;
+    front_only_ = viewpoint.front_only;
+    clearance_ = glm::distance(viewpoint.start, frame.origin);
     cut_.clear();
     values_.clear();
     light_ = Vec3d(0);

@@ -32,11 +32,11 @@ struct NearFace {
 /// lobes of a hit share the cut. Memory is reused; one per thread.
 class FaceSum {
   public:
-    /// Sets the lobes' light. view: the viewer's direction in the frame. front_only: see FaceViewpoint. tolerance:
+    /// Sets the lobes' light. view: the viewer's direction in the frame. viewpoint: of the frame's origin. tolerance:
     /// error of the weighted sum over the lobes ÷ that sum; absolute: of the sum, if that is more. Faces that are too
     /// near are appended to `near`, and are missing in the light.
-    void add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only, double tolerance,
-                double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near);
+    void add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame, const FaceViewpoint& viewpoint,
+                double tolerance, double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near);
 
   private:
     struct Part {
@@ -59,6 +59,7 @@ class FaceSum {
     std::span<SummedLobe> lobes_;
     Vec3d view_{0};
     bool front_only_ = false;
+    double clearance_ = 0;   // from the plane of a face, below which the hit is on it
     std::vector<Part> cut_;  // a heap by error
     std::vector<float> values_;
     Vec3d light_{0};      // of the cut, about

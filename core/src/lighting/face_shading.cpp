@@ -50,7 +50,7 @@ void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std:
     if (lobes_.empty()) {
         return;
     }
-    sum_.add_up(faces, towards_viewer, frame, viewpoint.front_only, tolerance, absolute, lobes_, near_);
+    sum_.add_up(faces, towards_viewer, frame, viewpoint, tolerance, absolute, lobes_, near_);
     for (std::size_t k = 0; k < lobes_.size(); ++k) {
         radiance[numbers_[k] * points.size() + point] = Rgb(lobes_[k].light);
     }

@@ -172,20 +172,15 @@ void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<
                     const std::vector<Rgb>& radiance, const Stopped& stopped, std::vector<Light>& lights) {
     EmitterLevels levels =
         make_emitter_levels(vertices, triangles, kLeastLevelFaces, stopped, light.side != FaceSide::both);
-    if (levels.levels.empty()) {
+    if (!(levels.area > 0)) {
         return;
     }
     const bool is_even = std::ranges::all_of(radiance, [&](const Rgb& color) { return color == radiance.front(); });
-    if (!is_even) {
+    if (!is_even || !levels.convex) {
         const std::vector<Triangle> outwards = levels.turned ? turned(triangles) : std::vector<Triangle>();
         light.faces = std::make_shared<const FaceTree>(vertices, levels.turned ? outwards : triangles, radiance,
                                                        levels.closed, levels.one_sided, stopped);
         light.radiance = light.faces->mean();
-    } else if (!levels.convex) {
-        const EmitterLevel& finest = levels.levels.front();
-        const std::vector<Rgb> even(finest.faces.size(), radiance.front());
-        light.faces = std::make_shared<const FaceTree>(finest.vertices, finest.faces, even, levels.closed,
-                                                       levels.one_sided, stopped);
     }
     light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
     lights.emplace_back(std::move(light));
