@@ -107,7 +107,7 @@ def dome(side: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 @pytest.mark.parametrize("form", ["dome", "uneven ball"])
 def test_a_surface_that_bends_away_throws_no_light_on_itself(form: str) -> None:
-    """With all of it near, rounding must not put a face before the point that lies on it."""
+    """Rounding must not put a face before the point that lies on it."""
     if form == "uneven ball":
         made = ball((0.3, 0.1, -0.2), 1.0)
         vertices, faces = made.vertices, made.triangles
