@@ -35,7 +35,10 @@ FIRST_TILE = 1001
 
 def image_texture(inputs: NodeInputs) -> Color | Value:
     """An Image Texture node."""
-    found = _projected(inputs, _textures(inputs), inputs.vector_or("Vector", nodes.uv("")))
+    textures = _textures(inputs)
+    is_even = textures is missing_texture() and _extension(inputs.node) != "clip"
+    place = nodes.values.vector((0.5, 0.5, 0.0)) if is_even else inputs.vector_or("Vector", nodes.uv(""))
+    found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
