@@ -136,13 +136,17 @@ def _attribute(mesh: Any, triangles: Triangles, normals: FloatArray | None, name
         return SHAPES[name](mesh).astype(np.float32)[triangles.corner_vertices][..., None]
     uvs = _uv_layer(mesh, name)
     if uvs is not None:
-        return np.nan_to_num(uv_coordinates(uvs), posinf=0.0, neginf=0.0)[triangles.corners]
+        return _uvs(uvs)[triangles.corners]
     return _layer(triangles, with_name(mesh.attributes, name) if name else None)
 
 
 def _uv_layer(mesh: Any, name: str) -> Any:
     layers = mesh.uv_layers
     return with_name(layers, name) if name else next((layer for layer in layers if layer.active_render), None)
+
+
+def _uvs(layer: Any) -> FloatArray:
+    return np.nan_to_num(uv_coordinates(layer), posinf=0.0, neginf=0.0)
 
 
 def _color_layer(layers: Any, name: str) -> Any:
@@ -160,7 +164,7 @@ def _tangents(mesh: Any, triangles: Triangles, normals: FloatArray | None, name:
         return None
     has_many_corners = np.bincount(triangles.polygons).max() > 2
     if layer is None or has_many_corners or not is_utf8(layer):
-        uvs = _on_sphere(triangles.vertices) if layer is None else uv_coordinates(layer)
+        uvs = _on_sphere(triangles.vertices) if layer is None else _uvs(layer)
         corners = triangles.corner_vertices if layer is None else triangles.corners
         return triangle_tangents(triangles.vertices, triangles.corner_vertices, normals, uvs[corners])
     mesh.calc_tangents(uvmap=layer.name)
