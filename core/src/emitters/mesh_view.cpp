@@ -9,12 +9,6 @@
 #include "base/ray_rounding.h"
 
 namespace shlight {
-namespace {
-
-/// Distance of a level's surface from the finest ÷ its error, at most: errors are means of some kind.
-constexpr double kMostErrors = 8;
-
-}  // namespace
 
 MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance) {
     const Vec3d to_center = emitter.center - frame.origin;
@@ -28,7 +22,7 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     bool outlined = silhouette_.find(level, point);
     if (distance < emitter.radius + error_ && !silhouette_.any_front()) {
         // A coarse level may be in front of the surface that was hit, and rounding on either side of it.
-        point += (kMostErrors * error_ + kMeshRounding * emitter.radius) * frame.z;
+        point += (2 * error_ + kMeshRounding * emitter.radius) * frame.z;
         outlined = silhouette_.find(level, point);
         if (!silhouette_.any_front()) {
             return emitter.one_sided ? Kind::hidden : Kind::inside;
