@@ -303,6 +303,7 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                                   std::size_t least_faces, const Stopped& stopped, bool one_sided) {
     EmitterLevels emitter{{}, one_sided, false, false, false, Vec3d(0), 0, 0};
+    end_if(stopped);
     IndexedMesh mesh = welded(vertices, triangles, kWelded);
     if (mesh.faces.empty()) {
         return emitter;

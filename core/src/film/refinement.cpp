@@ -141,8 +141,7 @@ Refinement::Noise Refinement::merged_noise(std::size_t pixel, int level, const P
         noise.seen = at_first(by_shadows);
         noise.independent = at_first(independent);
         const double of_ray = mean(quotient(variance, scale));
-        const double by_camera =
-            mean(quotient(kFineErrorByHalves * squared_difference, scale)) - mean(quotient(by_shadows, scale));
+        const double by_camera = mean(quotient(kFineErrorByHalves * squared_difference - by_shadows, scale));
         noise.variance = static_cast<float>(of_ray);
         noise.fine = static_cast<float>(all * by_camera - kMostByEdges * of_ray / evenness(level));
         noise.fine_pixels = noise.fine > kCountedShare * all * good_enough_ ? 1 : 0;
