@@ -82,6 +82,8 @@ SUBSURFACE_ENTRY_IS_DIFFUSE = not IS_BLENDER_4
 CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5
 # A Magic Texture brings coordinates into one turn after it has scaled them, or before.
 MAGIC_WRAPS_SCALED = VERSION >= (5, 2, 0)
+# Tangents of a mesh without a UV map go across the seam of its angles, or turn back there.
+ANGLES_TURN = VERSION >= (5, 0, 0)
 # An IES Texture interpolates at the edges of its table with the values there beyond them, or with 0.
 IES_KEEPS_EDGES = VERSION >= (5, 0, 1)
 # Faces without material have a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8.

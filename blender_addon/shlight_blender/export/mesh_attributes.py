@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compat import Triangles, uv_coordinates, values_of
+from ..compat import ANGLES_TURN, Triangles, uv_coordinates, values_of
 from ..names import is_utf8, with_name
 from .object_values import hashed, share
 from .triangle_geometry import triangle_tangents, unit
@@ -166,7 +166,8 @@ def _tangents(mesh: Any, triangles: Triangles, normals: FloatArray | None, name:
     if layer is None or has_many_corners or not is_utf8(layer):
         uvs = _on_sphere(triangles.vertices) if layer is None else _uvs(layer)
         corners = triangles.corner_vertices if layer is None else triangles.corners
-        return triangle_tangents(triangles.vertices, triangles.corner_vertices, normals, uvs[corners])
+        turns = layer is None and ANGLES_TURN
+        return triangle_tangents(triangles.vertices, triangles.corner_vertices, normals, uvs[corners], u_turns=turns)
     mesh.calc_tangents(uvmap=layer.name)
     tangents = values_of(mesh.loops, "tangent", np.float32, 3)
     signs = values_of(mesh.loops, "bitangent_sign", np.float32)

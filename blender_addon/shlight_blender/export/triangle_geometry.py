@@ -28,14 +28,20 @@ def face_normals(
 
 
 def triangle_tangents(
-    vertices: FloatArray, triangles: NDArray[np.int32], normals: FloatArray | None, uvs: FloatArray
+    vertices: FloatArray,
+    triangles: NDArray[np.int32],
+    normals: FloatArray | None,
+    uvs: FloatArray,
+    *,
+    u_turns: bool = False,
 ) -> FloatArray:
     """The direction in which u grows, and the sign of the bitangent, at corners of triangles (k, 3, 4).
 
     normals: of corners (k, 3, 3) or vertices (n, 3); None if the triangles are flat. uvs: (k, 3, 2). Corners that agree
     in place, normal, UV and sign share the mean of what their triangles say, weighed by the angle at the corner, in the
     plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). Blender computes the same, of no
-    mesh that has a face of more than four corners.
+    mesh that has a face of more than four corners. u_turns: u counts turns, and a triangle's edges take the shorter way
+    round from its first corner.
     """
     if normals is None:
         normals = np.repeat(face_normals(vertices, triangles)[:, None], 3, axis=1)
@@ -43,6 +49,9 @@ def triangle_tangents(
         normals = normals[triangles]
     p, n, uv = (values.astype(np.float64) for values in (vertices[triangles], normals, uvs))
     (a, b), (s, t) = ((own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]) for own in (p, uv))
+    if u_turns:
+        for edge in (s, t):
+            edge[:, 0] -= np.floor(edge[:, 0] + 0.5)
     area = s[:, 0] * t[:, 1] - s[:, 1] * t[:, 0]
     sign = np.where(area > 0.0, 1.0, -1.0)
     along = np.where(area != 0.0, sign, 0.0)[:, None] * (t[:, 1:] * a - s[:, 1:] * b)
