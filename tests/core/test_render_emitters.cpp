@@ -32,7 +32,6 @@ Mesh emissive(const testing::Solid& solid, const Vec3d& center, double scale) {
 
 /// Positions outside the square that camera_above shows.
 const Vec3d kCenter(0.4, 3.5, 1.2);
-const Vec3d kOther(-3.5, -0.3, 0.8);
 
 /// The image of a floor under a blocker and the lights that `add` adds.
 Image floor_under(const std::function<void(Scene&)>& add, const RenderSettings& settings, const Bsdf& floor,

@@ -27,15 +27,13 @@ inline constexpr float kLeast = std::numeric_limits<float>::min(), kMost = std::
 inline constexpr float kPi = 3.14159265358979323846F;
 /// The integer towards 0, as x86 has it: the least one where no integer holds the number.
 inline std::int32_t integer(float x) {
-    return x >= -0x1p31F && x < 0x1p31F ? static_cast<std::int32_t>(x) : std::numeric_limits<std::int32_t>::min();
+    return std::abs(x) < 0x1p31F ? static_cast<std::int32_t>(x) : std::numeric_limits<std::int32_t>::min();
 }
 
 /// The end of an interval that a number lies beyond, or the number; `low` for NaN.
 inline float between(float x, float low, float high) {
-    if (!(low <= x)) {
-        return low;
-    }
-    return x > high ? high : x;
+    const float above = low <= x ? x : low;
+    return above > high ? high : above;
 }
 
 /// The number as `at` rounds it, so that tiny ones are 0.
@@ -55,8 +53,7 @@ float polynomial(float x, float first, Rest... rest) {
 
 /// An angle less the nearest multiple q of `unit` pi, where q fits an integer.
 struct Turn {
-    float angle;
-    bool is_odd;
+    float angle, odd;  // 1 where q is odd, else 0: floats, so that loops vectorise
 
     Turn(float x, float unit) {
         const std::int32_t q = integer(std::rint(x * (1 / kPi / unit)));
@@ -66,14 +63,14 @@ struct Turn {
         angle = std::fma(number, -0.00024187564849853515625F * 4 * unit, angle);
         angle = std::fma(number, -3.7747668102383613586e-08F * 4 * unit, angle);
         angle = std::fma(number, -1.2816720341285448015e-12F * 4 * unit, angle);
-        is_odd = (q & 1) != 0;
+        odd = static_cast<float>(q & 1);
     }
 };
 
 inline float sine(float x) {
     const Turn turn(x, 1);
     const float t = without_tiny(turn.angle, kPi / 2);
-    const float s = t * t, a = turn.is_odd ? -t : t;
+    const float s = t * t, a = turn.odd != 0 ? -t : t;
     const float p = polynomial(s, -0.166666597127914428710938F, 0.00833307858556509017944336F,
                                -0.0001981069071916863322258F, 2.6083159809786593541503e-06F);
     return between(std::fma(s, p * a, a), -1, 1);
@@ -84,18 +81,18 @@ inline float cosine(float x) {
     const float t = without_tiny(turn.angle, kPi / 2);
     const float c = polynomial(t * t, 1.0F, -0.5F, 0.0416666641831398010253906F, -0.00138888787478208541870117F,
                                2.47990446951007470488548e-05F, -2.71811842367242206819355e-07F);
-    return between(turn.is_odd ? -c : c, -1, 1);
+    return between(turn.odd != 0 ? -c : c, -1, 1);
 }
 
 inline float tangent(float x) {
     const Turn turn(x, 0.5F);
-    const float t = turn.is_odd ? turn.angle : without_tiny(turn.angle, kPi / 4);
+    const float t = turn.odd != 0 ? turn.angle : without_tiny(turn.angle, kPi / 4);
     const float s = t * t;
     const float p =
         polynomial(s, 0.333331853151321411132812F, 0.133383005857467651367188F, 0.0534495301544666290283203F,
                    0.0242998078465461730957031F, 0.00331984995864331722259521F, 0.00927245803177356719970703F);
     const float u = std::fma(s, p * t, t);
-    return turn.is_odd ? -1 / u : u;
+    return turn.odd != 0 ? -1 / u : u;
 }
 
 /// start + sign times the arccosine of |x|.
@@ -197,22 +194,16 @@ inline float hyperbolic_tangent(float x) {
     return std::copysign(1 - 2 / (1 + exponential(2 * std::abs(x))), x);
 }
 
-/// base^exponent; 0 where that is not real, and of 0.
+/// base^exponent; 0 where that is not real, and of 0. Its cases are chosen in the end, so that loops vectorise.
 inline float power(float base, float exponent) {
-    if (exponent == 0 || base == 0) {
-        return exponent == 0 ? 1 : 0;
-    }
-    if (exponent == 1 || exponent == 2) {
-        return exponent == 1 ? base : std::min(base * base, kMost);
-    }
-    float sign = 1;
-    if (base < 0) {
-        if (exponent != std::trunc(exponent)) {
-            return 0;
-        }
-        sign = std::abs(exponent) < 0x1p24F && std::fmod(exponent, 2.0F) != 0 ? -1.0F : 1.0F;
-    }
-    return sign * power2(exponent * logarithm2(std::abs(base)));
+    const bool is_whole = exponent == std::trunc(exponent);
+    const float sign = base < 0 ? static_cast<float>(1 - 2 * (integer(exponent) & 1)) : 1;
+    float found = sign * power2(exponent * logarithm2(std::abs(base)));
+    found = base < 0 && !is_whole ? 0 : found;
+    found = exponent == 2 ? std::min(base * base, kMost) : found;
+    found = exponent == 1 ? base : found;
+    found = base == 0 ? 0 : found;
+    return exponent == 0 ? 1 : found;
 }
 
 inline float cube_root(float x) {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,23 @@ namespace {
 using Word = std::uint32_t;
 using Integer = std::int32_t;
 
+/// Hits that a script runs for at the same time.
+constexpr std::size_t kHits = 16;
+template <class T>
+struct alignas(kHits * sizeof(T)) Hits : std::array<T, kHits> {};
+
+/// All bits of a hit that something holds for.
+constexpr Word kYes = ~0U;
+
+/// Registers of each hit, and the hits that an instruction is for.
+struct Machine {
+    Hits<Word>* registers;
+    Hits<Word> active;
+    bool are_all_active;
+};
+
 struct Instruction;
-using Act = void (*)(Word* registers, const Instruction& at);
+using Act = void (*)(const Machine& machine, const Instruction& at);
 
 /// Numbers of registers; `to` of a jump, which has no act, is the number of an instruction.
 struct Instruction {
@@ -40,75 +56,114 @@ struct Instruction {
 };
 
 template <class T>
-T read(const Word* registers, Word index) {
-    return std::bit_cast<T>(registers[index]);
+T read(const Machine& machine, Word index, std::size_t hit) {
+    return std::bit_cast<T>(machine.registers[index][hit]);
 }
 
 template <class T>
-void write(Word* registers, Word index, T value) {
+Word word(T value) {
     if constexpr (std::is_same_v<T, bool>) {
-        registers[index] = static_cast<Word>(value);
+        return static_cast<Word>(value);
     } else {
-        registers[index] = std::bit_cast<Word>(value);
+        return std::bit_cast<Word>(value);
     }
+}
+
+/// Gives active hits their values.
+void keep(const Machine& machine, Word to, const Hits<Word>& values) {
+    Hits<Word>& kept = machine.registers[to];
+    if (machine.are_all_active) {
+        kept = values;
+        return;
+    }
+    for (std::size_t hit = 0; hit < kHits; ++hit) {
+        kept[hit] = machine.active[hit] != 0 ? values[hit] : kept[hit];
+    }
+}
+
+/// Gives active hits what a function says of them. It is asked of all, so that the loop vectorises.
+template <class Function>
+void write(const Machine& machine, Word to, Function value) {
+    Hits<Word> values;
+    for (std::size_t hit = 0; hit < kHits; ++hit) {
+        values[hit] = word(value(hit));
+    }
+    keep(machine, to, values);
 }
 
 /// Acts that apply a function to one, two or three registers.
 template <class T, auto kFunction>
-constexpr Act one = [](Word* r, const Instruction& at) { write(r, at.to, kFunction(read<T>(r, at.a))); };
+constexpr Act one = [](const Machine& m, const Instruction& at) {
+    write(m, at.to, [&](std::size_t hit) { return kFunction(read<T>(m, at.a, hit)); });
+};
 template <class T, auto kFunction>
-constexpr Act two =
-    [](Word* r, const Instruction& at) { write(r, at.to, kFunction(read<T>(r, at.a), read<T>(r, at.b))); };
+constexpr Act two = [](const Machine& m, const Instruction& at) {
+    write(m, at.to, [&](std::size_t hit) { return kFunction(read<T>(m, at.a, hit), read<T>(m, at.b, hit)); });
+};
 template <class T, auto kFunction>
-constexpr Act three = [](Word* r, const Instruction& at) {
-    write(r, at.to, kFunction(read<T>(r, at.a), read<T>(r, at.b), read<T>(r, at.c)));
+constexpr Act three = [](const Machine& m, const Instruction& at) {
+    write(m, at.to, [&](std::size_t hit) {
+        return kFunction(read<T>(m, at.a, hit), read<T>(m, at.b, hit), read<T>(m, at.c, hit));
+    });
 };
 
 /// Gradient noise, -1 … 1, at a place in as many registers.
 template <std::size_t kCount>
-void perlin(Word* registers, const Instruction& at) {
-    constexpr std::size_t kLanes = 16;
-    std::array<std::array<float, kLanes>, kCount> places{};
-    std::array<float, kLanes> zeros{}, ones{}, result{};
+void perlin(const Machine& machine, const Instruction& at) {
+    std::array<Hits<float>, kCount> places;
+    Hits<float> zeros{}, ones{}, found{};
     ones.fill(1);
     // One octave; of the arguments after it all are 0, which stands for no period and no footprint.
     std::array<const float*, 16> arguments{};
     arguments.fill(zeros.data());
     for (std::size_t i = 0; i < kCount; ++i) {
-        places[i].fill(read<float>(registers, at.a + static_cast<Word>(i)));
+        for (std::size_t hit = 0; hit < kHits; ++hit) {
+            places[i][hit] = read<float>(machine, at.a + static_cast<Word>(i), hit);
+        }
         arguments[i] = places[i].data();
     }
     arguments[kCount] = ones.data();
-    float* out = result.data();
-    noise<kCount>({arguments.data(), &out, 1, nullptr, nullptr, static_cast<Word>(Fractal::fbm_sum), nullptr});
-    write(registers, at.to, result[0]);
+    float* out = found.data();
+    noise<kCount>({arguments.data(), &out, kHits, nullptr, nullptr, static_cast<Word>(Fractal::fbm_sum), nullptr});
+    write(machine, at.to, [&](std::size_t hit) { return found[hit]; });
 }
 
 /// A. R. Smith, "Color Gamut Transform Pairs" (SIGGRAPH 1978).
-void rgb_from_hsv(Word* registers, const Instruction& at) {
-    const auto h = read<float>(registers, at.a), s = read<float>(registers, at.a + 1);
-    const auto v = read<float>(registers, at.a + 2);
-    const float turn = 6 * (h - std::floor(h));
-    const Integer sixth = script::integer(std::floor(turn));
-    const float f = turn - static_cast<float>(sixth);
-    const float p = v * (1 - s), q = v * (1 - s * f), t = v * (1 - s * (1 - f));
-    const std::array<std::array<float, 3>, 6> colors = {
-        {{v, t, p}, {q, v, p}, {p, v, t}, {p, q, v}, {t, p, v}, {v, p, q}}};
-    const bool is_gray = s < 0.0001F;
+void rgb_from_hsv(const Machine& machine, const Instruction& at) {
+    std::array<Hits<Word>, 3> found;
+    for (std::size_t hit = 0; hit < kHits; ++hit) {
+        const auto h = read<float>(machine, at.a, hit), s = read<float>(machine, at.a + 1, hit);
+        const auto v = read<float>(machine, at.a + 2, hit);
+        const float turn = 6 * (h - std::floor(h));
+        const Integer sixth = script::integer(std::floor(turn));
+        const float f = turn - static_cast<float>(sixth);
+        const float p = v * (1 - s), q = v * (1 - s * f), t = v * (1 - s * (1 - f));
+        const std::array<std::array<float, 3>, 6> colors = {
+            {{v, t, p}, {q, v, p}, {p, v, t}, {p, q, v}, {t, p, v}, {v, p, q}}};
+        const bool is_gray = s < 0.0001F;
+        for (std::size_t i = 0; i < 3; ++i) {
+            found[i][hit] = word(is_gray ? v : colors[sixth < 0 || sixth > 5 ? 5 : sixth][i]);
+        }
+    }
     for (Word i = 0; i < 3; ++i) {
-        write(registers, at.to + i, is_gray ? v : colors[sixth < 0 || sixth > 5 ? 5 : sixth][i]);
+        keep(machine, at.to + i, found[i]);
     }
 }
 
 /// An element of an array of `at.c` registers; the first or the last one in the place of what lies before or behind.
-Word element(const Word* registers, const Instruction& at, Word index) {
-    return static_cast<Word>(std::clamp(read<Integer>(registers, index), 0, static_cast<Integer>(at.c) - 1));
+Word element(const Machine& machine, const Instruction& at, Word index, std::size_t hit) {
+    return static_cast<Word>(std::clamp(read<Integer>(machine, index, hit), 0, static_cast<Integer>(at.c) - 1));
 }
-void load(Word* registers, const Instruction& at) {
-    registers[at.to] = registers[at.a + element(registers, at, at.b)];
+void load(const Machine& machine, const Instruction& at) {
+    write(machine, at.to,
+          [&](std::size_t hit) { return read<Word>(machine, at.a + element(machine, at, at.b, hit), hit); });
 }
-void store(Word* registers, const Instruction& at) {
-    registers[at.to + element(registers, at, at.a)] = registers[at.b];
+void store(const Machine& machine, const Instruction& at) {
+    for (std::size_t hit = 0; hit < kHits; ++hit) {
+        if (machine.active[hit] != 0) {
+            machine.registers[at.to + element(machine, at, at.a, hit)][hit] = read<Word>(machine, at.b, hit);
+        }
+    }
 }
 
 // Divisions that have no result are 0; -1 is a divisor of its own, for the least integer has no negative.
@@ -128,18 +183,19 @@ Integer shifted_right(Integer a, Integer by) {
 }
 
 /// A component of a vector product: a0 b1 - a1 b0 of pairs of registers, rounded as in Cycles.
-void cross_term(Word* registers, const Instruction& at) {
-    const float second = read<float>(registers, at.a + 1) * read<float>(registers, at.b);
-    write(registers, at.to, std::fma(read<float>(registers, at.a), read<float>(registers, at.b + 1), -second));
+void cross_term(const Machine& machine, const Instruction& at) {
+    const auto a = [&](Word i, std::size_t hit) { return read<float>(machine, at.a + i, hit); };
+    const auto b = [&](Word i, std::size_t hit) { return read<float>(machine, at.b + i, hit); };
+    write(machine, at.to, [&](std::size_t hit) { return std::fma(a(0, hit), b(1, hit), -(a(1, hit) * b(0, hit))); });
 }
 
 /// The scalar product of triples of registers, rounded as in Cycles.
-void dot(Word* registers, const Instruction& at) {
-    const auto product = [&](Word i, float rest) {
-        return std::fma(read<float>(registers, at.a + i), read<float>(registers, at.b + i), rest);
-    };
-    const float y = read<float>(registers, at.a + 1) * read<float>(registers, at.b + 1);
-    write(registers, at.to, product(2, product(0, y)));
+void dot(const Machine& machine, const Instruction& at) {
+    const auto a = [&](Word i, std::size_t hit) { return read<float>(machine, at.a + i, hit); };
+    const auto b = [&](Word i, std::size_t hit) { return read<float>(machine, at.b + i, hit); };
+    write(machine, at.to, [&](std::size_t hit) {
+        return std::fma(a(2, hit), b(2, hit), std::fma(a(0, hit), b(0, hit), a(1, hit) * b(1, hit)));
+    });
 }
 
 constexpr std::string_view kJump = "jump", kJumpUnless = "jump_unless", kLoad = "load", kStore = "store";
@@ -240,7 +296,7 @@ constexpr std::size_t kWords = 5;  // of an instruction: its number, and where i
 /// Registers that an instruction may use from one on, without those of `load` and `store`.
 constexpr std::size_t kMostWide = 4;
 /// Jumps backwards for a hit, after which a script ends, so that an endless one does too.
-constexpr std::size_t kMostPasses = std::size_t{1} << 20U;
+constexpr Word kMostPasses = Word{1} << 20U;
 
 bool fits(const ShaderScript& script, const Word* words) {
     const auto [number, to, a, b, c] = std::array{words[0], words[1], words[2], words[3], words[4]};
@@ -269,18 +325,82 @@ std::vector<Instruction> instructions(const ShaderScript& script) {
     return found;
 }
 
-void run(const std::vector<Instruction>& code, Word* registers) {
-    std::size_t passes = kMostPasses;
-    for (std::size_t next = 0; next < code.size();) {
-        const Instruction& at = code[next];
-        ++next;
-        if (at.act != nullptr) {
-            at.act(registers, at);
-        } else if (!at.is_conditional || registers[at.a] == 0) {
-            if (at.to < next && --passes == 0) {
-                return;
+/// Where each hit is in a script, and how often it may still jump back.
+class Places {
+  public:
+    Places(std::size_t end, std::size_t count) : end_(static_cast<Word>(end)) {
+        next_.fill(end_);
+        std::fill_n(next_.begin(), count, 0);
+        passes_.fill(kMostPasses);
+    }
+
+    /// Chooses the hits that are furthest behind; the others wait for them. False if all have ended.
+    bool choose(Machine& machine) {
+        first_ = *std::min_element(next_.begin(), next_.end());
+        Word active = kYes;
+        wait_ = end_;
+        for (std::size_t hit = 0; hit < kHits; ++hit) {
+            machine.active[hit] = next_[hit] == first_ ? kYes : 0;
+            active &= machine.active[hit];
+            wait_ = std::min(wait_, next_[hit] == first_ ? end_ : next_[hit]);
+        }
+        machine.are_all_active = active == kYes;
+        return first_ < end_;
+    }
+
+    /// The place of the chosen hits, and the one where the first of the others waits.
+    Word first() const { return first_; }
+    Word wait() const { return wait_; }
+
+    void go_on(const Machine& machine, Word to) {
+        for (std::size_t hit = 0; hit < kHits; ++hit) {
+            next_[hit] = machine.active[hit] != 0 ? to : next_[hit];
+        }
+    }
+
+    /// Sends the chosen hits on from a jump; where all go, or nothing if they part.
+    std::optional<Word> jump(const Machine& machine, const Instruction& at, Word from) {
+        // Copies of all, and masks in place of conditions, so that the loop vectorises.
+        const Hits<Word> condition = machine.registers[at.a], active = machine.active;
+        Hits<Word> next = next_, passes = passes_;
+        const Word always = at.is_conditional ? 0 : kYes, back = at.to <= from ? 1 : 0;
+        Word least = kYes, most = 0;
+        for (std::size_t hit = 0; hit < kHits; ++hit) {
+            const Word jumps = always | (condition[hit] == 0 ? kYes : 0);
+            passes[hit] -= back & jumps & active[hit];
+            const Word ahead = (jumps & at.to) | (~jumps & (from + 1));
+            next[hit] = (active[hit] & (passes[hit] == 0 ? end_ : ahead)) | (~active[hit] & next[hit]);
+            least = std::min(least, next[hit] | ~active[hit]);
+            most = std::max(most, next[hit] & active[hit]);
+        }
+        next_ = next;
+        passes_ = passes;
+        return least == most ? std::optional(most) : std::nullopt;
+    }
+
+  private:
+    Hits<Word> next_, passes_;
+    Word end_, first_ = 0, wait_ = 0;
+};
+
+/// Runs a script for the first `count` hits. Those that a branch parts go on together where both ways meet, which is
+/// further on in the script than the ways.
+void run(const std::vector<Instruction>& code, Hits<Word>* registers, std::size_t count) {
+    Machine machine{registers, {}, false};
+    Places places(code.size(), count);
+    while (places.choose(machine)) {
+        std::optional<Word> at = places.first();
+        while (at && *at < places.wait()) {
+            const Instruction& instruction = code[*at];
+            if (instruction.act == nullptr) {
+                at = places.jump(machine, instruction, *at);
+                continue;
             }
-            next = at.to;
+            instruction.act(machine, instruction);
+            ++*at;
+        }
+        if (at) {
+            places.go_on(machine, *at);
         }
     }
 }
@@ -309,15 +429,20 @@ void check_one(const ShaderScript& script) {
 void run_lanes(const OperationLanes& lanes) {
     const ShaderScript& script = *lanes.script;
     const std::vector<Instruction> code = instructions(script);
-    std::vector<Word> registers;
-    for (std::size_t lane = 0; lane < lanes.count; ++lane) {
-        registers = script.registers;
-        for (std::size_t i = 0; i < script.argument_count; ++i) {
-            registers[i] = std::bit_cast<Word>(lanes.arguments[i][lane]);
+    std::vector<Hits<Word>> registers(script.registers.size());
+    for (std::size_t first = 0; first < lanes.count; first += kHits) {
+        const std::size_t count = std::min(kHits, lanes.count - first);
+        for (std::size_t i = 0; i < registers.size(); ++i) {
+            registers[i].fill(script.registers[i]);
         }
-        run(code, registers.data());
+        for (std::size_t i = 0; i < script.argument_count; ++i) {
+            std::transform(lanes.arguments[i] + first, lanes.arguments[i] + first + count, registers[i].begin(),
+                           word<float>);
+        }
+        run(code, registers.data(), count);
         for (std::size_t i = 0; i < script.results.size(); ++i) {
-            lanes.results[i][lane] = std::bit_cast<float>(registers[script.results[i]]);
+            std::transform(registers[script.results[i]].begin(), registers[script.results[i]].begin() + count,
+                           lanes.results[i] + first, [](Word bits) { return std::bit_cast<float>(bits); });
         }
     }
 }

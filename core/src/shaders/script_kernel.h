@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Scripts of shader programs: instructions with loops, which are interpreted hit by hit.
+// Scripts of shader programs: instructions with loops, which are interpreted for several hits at a time.
 #pragma once
 
 #include <cstddef>

@@ -47,6 +47,7 @@ def prepare(scene: Any, request: SceneRequest) -> None:
             setattr(settings, name, value)
     if request.render_seconds is not None:
         settings.time_limit = request.render_seconds
+        settings.max_samples = max(settings.max_samples, request.samples)  # time and noise end it
     if request.shadow_rays is not None:
         settings.use_shadows = request.shadow_rays > 0
         settings.shadow_rays = max(request.shadow_rays, 1)
