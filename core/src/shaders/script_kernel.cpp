@@ -325,7 +325,7 @@ std::vector<Instruction> instructions(const ShaderScript& script) {
     return found;
 }
 
-/// Where each hit is in a script, and how often it may still jump back.
+/// Keeps the place of each hit in a script, and how often it may still jump back.
 class Places {
   public:
     Places(std::size_t end, std::size_t count) : end_(static_cast<Word>(end)) {
