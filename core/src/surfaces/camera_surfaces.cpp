@@ -116,26 +116,24 @@ void CameraSurfaces::meet(const Sink& sink) {
     parts_.clear();
 }
 
-ShadedPlace CameraSurfaces::place_of(const Surface& surface) const {
-    return {surface.point, surface.hit, surface.towards_viewer, surface.ray_length(), surface.depth};
-}
-
 /// Neighbours of other rays than the camera's are unknown; places near by, and the directions to them, are Cycles'.
-void CameraSurfaces::set_beside(ShadedPlace& place, const Surface& surface, const NeighbourRays& neighbours,
-                                double slope_width) const {
+PlacesBeside CameraSurfaces::places_beside(const SurfacePlace& place, const Surface& surface,
+                                           const NeighbourRays& neighbours, double slope_width) const {
+    PlacesBeside beside{place, place, place, place};
     const PlacedMeshes& placed = scene_->placed();
     const Vec3d& normal = surface.point.geometric_normal;
     if (surface.source == RaySource::camera) {
-        place.at[1] = placed.neighbour(place.at[0], normal, surface.distance, neighbours.right);
-        place.at[2] = placed.neighbour(place.at[0], normal, surface.distance, neighbours.below);
+        beside[0] = placed.neighbour(place, normal, surface.distance, neighbours.right);
+        beside[1] = placed.neighbour(place, normal, surface.distance, neighbours.below);
     }
     if (slope_width > 0) {
         const double pixel = neighbours.width + neighbours.spread * (surface.travelled + surface.distance);
         const Vec3d diagonal(normal.x == normal.y && normal.x == normal.z ? -1 : 1, 1, 1);
         const Vec3d x = glm::normalize(glm::cross(diagonal, normal));
-        place.at[3] = placed.beside(place.at[0], slope_width * pixel * x);
-        place.at[4] = placed.beside(place.at[0], slope_width * pixel * glm::cross(normal, x));
+        beside[2] = placed.beside(place, slope_width * pixel * x);
+        beside[3] = placed.beside(place, slope_width * pixel * glm::cross(normal, x));
     }
+    return beside;
 }
 
 void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
@@ -200,15 +198,18 @@ void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std:
     const ShaderProgram& program = material.shader->program;
     const bool differs = !neighbours.empty() && program.takes_differences();
     places_.clear();
+    beside_.clear();
     for (const std::uint32_t i : surfaces) {
-        places_.push_back(place_of(surfaces_[i]));
+        const Surface& surface = surfaces_[i];
+        places_.emplace_back(surface.point, surface.hit, surface.towards_viewer, surface.ray_length(), surface.depth);
         if (differs) {
-            set_beside(places_.back(), surfaces_[i], neighbours[surfaces_[i].ray], double{program.slope_width()});
+            const double width{program.slope_width()};
+            beside_.push_back(places_beside(places_.back().at, surface, neighbours[surface.ray], width));
         }
     }
     const std::size_t begin = results_.size();
     results_.resize(begin + program.result_count() * surfaces.size());
-    scene_->placed().run(program, material, places_, differs, registers_, std::span(results_).subspan(begin));
+    scene_->placed().run(program, material, places_, beside_, registers_, std::span(results_).subspan(begin));
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         surfaces_[surfaces[k]].results = begin + k;
         surfaces_[surfaces[k]].stride = surfaces.size();

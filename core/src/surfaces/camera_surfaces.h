@@ -251,10 +251,8 @@ class CameraSurfaces {
                           const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
-    ShadedPlace place_of(const Surface& surface) const;
-    /// Sets the other places of a program that takes differences.
-    void set_beside(ShadedPlace& place, const Surface& surface, const NeighbourRays& neighbours,
-                    double slope_width) const;
+    PlacesBeside places_beside(const SurfacePlace& place, const Surface& surface, const NeighbourRays& neighbours,
+                               double slope_width) const;
     void add_emission(const Surface& surface, const Sink& sink);
     void pass_on(std::size_t first, const Sink& sink);
     bool is_shaded(const Segment& segment) const {
@@ -359,6 +357,7 @@ class CameraSurfaces {
     std::vector<SubsurfaceProbe> probes_;
     std::vector<std::uint32_t> order_, material_of_;
     std::vector<ShadedPlace> places_;
+    std::vector<PlacesBeside> beside_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
     std::vector<std::uint8_t> drawn_hits_;

@@ -334,12 +334,11 @@ const Rgb& PlacedMeshes::emission(const Material& material, const RayHit& hit, c
     return both.front != both.back && is_back(hit, towards_viewer) ? both.back : both.front;
 }
 
-Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, int place, bool smooth) const {
-    if (place == 0) {
+Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, const SurfacePlace& at, bool smooth) const {
+    if (&at == &shaded.at) {
         return smooth ? shaded.shading_normal : shaded.geometric_normal;
     }
-    const SurfacePlace& at = shaded.at[static_cast<std::size_t>(place)];
-    const SurfacePoint point = surface(at.hit, Vec3f(-shaded.at[0].towards_viewer));
+    const SurfacePoint point = surface(at.hit, Vec3f(-shaded.at.towards_viewer));
     return smooth ? point.shading_normal : point.geometric_normal;
 }
 
@@ -387,30 +386,45 @@ bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const
 /// Reads the inputs of one material's program.
 class PlacedMeshes::PlaceReader : public ShaderReader {
   public:
-    PlaceReader(const PlacedMeshes& placed, const Material& material, std::span<const ShadedPlace> places)
-        : placed_(&placed), material_(&material), places_(places) {}
+    PlaceReader(const PlacedMeshes& placed, const Material& material, std::span<const ShadedPlace> places,
+                std::span<const PlacesBeside> beside)
+        : placed_(&placed), material_(&material), places_(places), beside_(beside) {}
 
     void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
-        placed_->read(input, *material_, place, places_.subspan(first, out.size()), out);
+        const std::span<const ShadedPlace> hits = places_.subspan(first, out.size());
+        if (place == 0) {
+            placed_->read(
+                input, *material_, hits, [&](std::size_t i) -> const auto& { return hits[i].at; }, out);
+            return;
+        }
+        const auto number = static_cast<std::size_t>(place) - 1;
+        const auto of = [&](std::size_t i) -> const auto& {
+            return beside_[first + i][number];
+        };
+        placed_->read(input, *material_, hits, of, out);
     }
 
   private:
     const PlacedMeshes* placed_;
     const Material* material_;
     std::span<const ShadedPlace> places_;
+    std::span<const PlacesBeside> beside_;
 };
 
 void PlacedMeshes::run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places,
-                       bool differs, ShaderProgram::Registers& registers, std::span<float> results) const {
-    program.evaluate(PlaceReader(*this, material, places), places.size(), differs, registers, results);
+                       std::span<const PlacesBeside> beside, ShaderProgram::Registers& registers,
+                       std::span<float> results) const {
+    const PlaceReader reader(*this, material, places, beside);
+    program.evaluate(reader, places.size(), !beside.empty(), registers, results);
 }
 
-void PlacedMeshes::read(const ShaderInput& input, const Material& material, int place,
-                        std::span<const ShadedPlace> places, std::span<float> out) const {
+template <class PlaceOf>
+void PlacedMeshes::read(const ShaderInput& input, const Material& material, std::span<const ShadedPlace> hits,
+                        const PlaceOf& place_of, std::span<float> out) const {
     const auto fill = [&](const auto& number) {
-        std::transform(places.begin(), places.end(), out.begin(), [&](const ShadedPlace& shaded) {
-            return static_cast<float>(number(shaded, shaded.at[static_cast<std::size_t>(place)]));
-        });
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = static_cast<float>(number(hits[i], place_of(i)));
+        }
     };
     const auto component = static_cast<int>(input.component);
     const auto placement = [&](const SurfacePlace& at) -> const Placement& { return placements_[at.hit.instance]; };
@@ -420,8 +434,8 @@ void PlacedMeshes::read(const ShaderInput& input, const Material& material, int 
                 [&](const auto&, const SurfacePlace& at) { return at.position[component] + origin_[component]; });
         case ShaderSource::normal:
         case ShaderSource::geometric_normal:
-            return fill([&](const ShadedPlace& shaded, const SurfacePlace&) {
-                return normal_at(shaded, place, input.source == ShaderSource::normal)[component];
+            return fill([&](const ShadedPlace& shaded, const SurfacePlace& at) {
+                return normal_at(shaded, at, input.source == ShaderSource::normal)[component];
             });
         case ShaderSource::towards_viewer:
             return fill([&](const auto&, const SurfacePlace& at) { return at.towards_viewer[component]; });
@@ -448,7 +462,7 @@ void PlacedMeshes::read(const ShaderInput& input, const Material& material, int 
             return fill([&](const auto&, const SurfacePlace& at) { return component == 0 ? at.hit.u : at.hit.v; });
         case ShaderSource::backfacing:
             return fill([&](const ShadedPlace& shaded, const SurfacePlace& at) {
-                return is_back(at.hit, shaded.at[0].towards_viewer) ? 1 : 0;
+                return is_back(at.hit, shaded.at.towards_viewer) ? 1 : 0;
             });
         case ShaderSource::ray_length:
             return fill([](const ShadedPlace& shaded, const auto&) { return shaded.ray_length; });
@@ -456,7 +470,7 @@ void PlacedMeshes::read(const ShaderInput& input, const Material& material, int 
             return fill([](const ShadedPlace& shaded, const auto&) { return shaded.transparent_depth; });
         case ShaderSource::mesh_normal:
             return fill([&](const ShadedPlace& shaded, const SurfacePlace& at) {
-                return mesh_normal(at.hit, normal_at(shaded, place, true))[component];
+                return mesh_normal(at.hit, normal_at(shaded, at, true))[component];
             });
         case ShaderSource::height:
             return fill([&](const auto&, const SurfacePlace& at) { return height(at.hit, input.component); });

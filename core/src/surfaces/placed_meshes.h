@@ -32,20 +32,21 @@ struct SurfacePlace {
     Vec3d towards_viewer;  ///< unit
 };
 
-/// The same, and other places of the surface (see shader_program.h).
+/// Other places of a surface (see shader_program.h): to the right of a hit, below it, and two near by.
+using PlacesBeside = std::array<SurfacePlace, 4>;
+
+/// A place, and what only hits have.
 struct ShadedPlace {
-    /// The others are in the same place.
     ShadedPlace(const SurfacePoint& point, const RayHit& hit, const Vec3d& towards_viewer, double length,
                 std::uint32_t depth)
-        : shading_normal(point.shading_normal),
+        : at{hit, point.position, towards_viewer},
+          shading_normal(point.shading_normal),
           geometric_normal(point.geometric_normal),
           ray_length(length),
-          transparent_depth(depth) {
-        at.fill({hit, point.position, towards_viewer});
-    }
+          transparent_depth(depth) {}
 
-    std::array<SurfacePlace, 5> at;          ///< the hit, to the right, below, and two near by
-    Vec3d shading_normal, geometric_normal;  ///< at the hit
+    SurfacePlace at;
+    Vec3d shading_normal, geometric_normal;
     double ray_length;
     std::uint32_t transparent_depth;
 };
@@ -108,16 +109,17 @@ class PlacedMeshes {
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
     /// The place at the end of a step in the plane of a surface, which may lie outside its triangle.
     SurfacePlace beside(const SurfacePlace& place, const Vec3d& step) const;
-    /// Evaluates a material's program, see ShaderProgram::evaluate().
-    void run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places, bool differs,
-             ShaderProgram::Registers& registers, std::span<float> results) const;
+    /// Evaluates a material's program, see ShaderProgram::evaluate(). beside: of each place; none: nothing differs.
+    void run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places,
+             std::span<const PlacesBeside> beside, ShaderProgram::Registers& registers, std::span<float> results) const;
 
   private:
     class PlaceReader;
 
-    /// place: see ShaderReader.
-    void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
-              std::span<float> out) const;
+    /// An input at hits, each with the place where it is asked for.
+    template <class PlaceOf>
+    void read(const ShaderInput& input, const Material& material, std::span<const ShadedPlace> hits,
+              const PlaceOf& place_of, std::span<float> out) const;
     /// The mesh's own at the corners of the hit triangle, in its frame, of no particular length; none: it is flat.
     std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
     /// surface() of curves and spheres.
@@ -129,8 +131,7 @@ class PlacedMeshes {
     /// ∂P/∂u up to its length, of curves the way along them; 0 where u and v do not say.
     Vec3d growth_of_u(const RayHit& hit) const;
     Vec3d around_axis(const RayHit& hit, const Vec3d& position) const;
-    /// place: see ShaderReader.
-    Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;
+    Vec3d normal_at(const ShadedPlace& shaded, const SurfacePlace& at, bool smooth) const;
     /// See ShaderSource::mesh_normal. normal: that in the world.
     Vec3d mesh_normal(const RayHit& hit, const Vec3d& normal) const;
     float object_value(const Placement& placement, std::uint32_t index) const;

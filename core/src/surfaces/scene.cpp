@@ -143,10 +143,10 @@ void CompiledScene::find(std::span<const Ray> rays, std::span<const RayHit> hits
         }
         const ShaderProgram& program = own.shader->shadow_program;
         results.resize(program.result_count() * alike.size());
-        placed_->run(program, own, alike, false, registers, results);
+        placed_->run(program, own, alike, {}, registers, results);
         for (std::size_t k = 0; k < alike.size(); ++k) {
             const bool leaves =
-                own.shader->absorption != Rgb(0) && placed_->is_back(hits[numbers[k]], alike[k].at[0].towards_viewer);
+                own.shader->absorption != Rgb(0) && placed_->is_back(hits[numbers[k]], alike[k].at.towards_viewer);
             entered[numbers[k]] = leaves ? -own.shader->absorption : own.shader->absorption;
             for (int channel = 0; channel < 3; ++channel) {
                 const float share = results[static_cast<std::size_t>(channel) * alike.size() + k];
