@@ -195,7 +195,7 @@ void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) 
                      [&](const EmitterEdge& a, const EmitterEdge& b) { return key(a) < key(b); });
 }
 
-/// Numbers of the faces along some edges, each once; kNone for a border.
+/// Numbers of the faces along some edges of a closed surface, each once.
 std::vector<std::uint32_t> faces_along(std::span<const EmitterEdge> edges) {
     std::vector<std::uint32_t> faces;
     for (const EmitterEdge& edge : edges) {
@@ -207,10 +207,9 @@ std::vector<std::uint32_t> faces_along(std::span<const EmitterEdge> edges) {
 }
 
 /// The bounds of faces' planes, without the planes' positions.
-EdgeBlock bounds_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, std::vector<std::uint32_t> faces) {
+EdgeBlock bounds_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, std::span<const std::uint32_t> faces) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     EdgeBlock block{0, 0, 0, 0, Vec3d(0), Vec3d(0), 1, 0, kInfinity, -kInfinity};
-    const bool border = std::erase(faces, EmitterEdge::kNone) > 0;
     for (const EmitterEdge& edge : edges) {
         block.center += 0.5 * (mesh.vertices[edge.from] + mesh.vertices[edge.to]);
     }
@@ -228,7 +227,7 @@ EdgeBlock bounds_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges,
         block.high = std::max(block.high, height);
     }
     // The angles of the planes with each other must be less than half a turn for them to be seen from one side.
-    if (border || block.cosine <= 0) {
+    if (block.cosine <= 0) {
         block.low = -kInfinity;
         block.high = kInfinity;
     }
@@ -245,7 +244,7 @@ void add_block(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, Emit
     block.first_plane = level.block_planes.size();
     block.plane_count = faces.size();
     for (const std::uint32_t face : faces) {
-        level.block_planes.push_back(face == EmitterEdge::kNone ? EmitterPlane{Vec3d(0), 0} : level.planes[face]);
+        level.block_planes.push_back(level.planes[face]);
     }
     const auto place = [&](std::uint32_t face) {
         return static_cast<std::uint8_t>(std::lower_bound(faces.begin(), faces.end(), face) - faces.begin());

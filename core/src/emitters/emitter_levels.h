@@ -38,10 +38,10 @@ struct EdgeBlock {
     Vec3d center;
     Vec3d axis;           ///< unit, in the middle of the faces' normals
     double cosine, sine;  ///< of the largest angle between the axis and a normal
-    double low, high;     ///< of the planes' heights over the center; of a block with a border, infinite
+    double low, high;     ///< of the planes' heights over the center; infinite if no point is in front of all
 };
 
-/// An EmitterEdge with the numbers of its faces' planes in its block; a border has a plane that is 0 everywhere.
+/// An EmitterEdge of a closed surface, with the numbers of its faces' planes in its block.
 struct BlockEdge {
     std::uint32_t from, to;
     std::uint8_t left, right;
@@ -50,6 +50,7 @@ struct BlockEdge {
 /// Edges of a block: of smaller ones there are more to look at, of larger ones more that lie on both sides of a point.
 inline constexpr std::size_t kBlockEdges = 16;
 
+/// A convex surface.
 struct EmitterLevel {
     std::vector<Vec3d> vertices;
     std::vector<BlockEdge> edges;

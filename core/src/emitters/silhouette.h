@@ -16,10 +16,10 @@ namespace shlight {
 /// Finds outlines; memory is reused.
 class Silhouette {
   public:
-    /// Finds the silhouette of a closed surface. An edge between two faces that both show the point their outer side is
+    /// Finds the silhouette of a convex surface. An edge between two faces that both show the point their outer side is
     /// passed once in each direction and cancels; the remaining edges are those where the surface turns away. They
-    /// enclose all faces whose outer side is visible. Several visible layers count several times. Returns false if
-    /// there is none: the point is inside, or every face is seen edge-on.
+    /// enclose all faces whose outer side is visible. Returns false if there is none: the point is inside, or every
+    /// face is seen edge-on.
     bool find(const EmitterLevel& level, const Vec3d& point);
 
     /// Closed lines that pass no vertex twice, relative to the point, one after the other; counter-clockwise, as seen
