@@ -168,6 +168,22 @@ def pixel_error(image: Any, reference: Any) -> float:
     return float(np.mean((image - reference) ** 2 / scale))
 
 
+def bounds(name: str, light: str, is_whole: bool) -> tuple[float, float]:
+    """Returns the largest distance of a ball's mean from that of Cycles, and the largest relMSE."""
+    if "film" in name:
+        # A lamp sees a film's colours at nearly one angle, where the sum of lobes is off by some percent of their mean.
+        return (4e-3, 4e-3) if light == "sky" else (2.5e-2, 2e-2)
+    if "shirley" in name.lower() and light == "sky":
+        # A half vector that Cycles draws may be behind the viewer's horizon. It takes another direction than that of
+        # the half vector then, and the weight of this one.
+        return 3e-2, 5e-3
+    if name in SPOTS:
+        return 3e-2, 1e-1
+    # Cycles' noise of narrow reflections of lights with an extent is 0.4 % of a ball's light.
+    mean = 1e-2 if is_whole and light != LIGHTS[0] else 6e-3
+    return mean, 1e-2 if name in NARROW_RIMS else 2.5e-3 if "toon" in name else 1.5e-3
+
+
 @pytest.mark.parametrize(
     ("light", "names", "samples"),
     [
@@ -200,21 +216,17 @@ def test_as_bright_as_in_cycles(studio: Any, light: str, names: tuple[str, ...] 
     studio.camera((0, -20, 0), (0, 0, 0), type="ORTHO", ortho_scale=COLUMNS)
     studio.resolution(COLUMNS * SIDE, rows * SIDE)
     studio.scene.cycles.samples = samples
-    studio.scene.shlight.pixel_samples = 32
+    studio.scene.shlight.pixel_samples = 32 if names else 128  # rims of brushed metals are bright
     assert studio.messages() == []
     pictures = studio.render("SHLIGHT"), studio.render("CYCLES")
-    # Cycles' noise of narrow reflections of lights with an extent is 0.4 % of a ball's light.
-    mean = 1e-2 if names is None and light != LIGHTS[0] else 6e-3
-    # A lamp sees a film's colours at nearly one angle, where the sum of lobes is off by some percent of their mean.
-    film_mean, film_error = (4e-3, 4e-3) if light == "sky" else (2.5e-2, 2e-2)
     wrong = {}
     for name, (row, column) in zip(made, places, strict=True):
         ours, theirs = (each[SIDE * row :, SIDE * column :][:SIDE, :SIDE] for each in pictures)
+        if "film" in name:
+            ours = np.maximum(ours, 0.0)
         ratio, error = mean_ratio(ours, theirs), (pixel_error if "film" in name else rel_mse)(ours, theirs)
         print(f"{name:30s} mean {100 * (ratio - 1):+.2f} %, relMSE {error:.1e}")
-        most = 1e-1 if name in SPOTS else 1e-2 if name in NARROW_RIMS else 2.5e-3 if "toon" in name else 1.5e-3
-        if "film" in name:
-            mean, most = film_mean, film_error
-        if not (abs(ratio - 1) <= (3e-2 if name in SPOTS else mean) and error <= most):
+        most_mean, most_error = bounds(name, light, names is None)
+        if not (abs(ratio - 1) <= most_mean and error <= most_error):
             wrong[name] = ratio, error
     assert wrong == {}

@@ -67,7 +67,7 @@ def test_a_coarse_ball_and_a_roof(studio: Any, light: str, shader: str, offsets:
     studio.resolution(32, 24)
     studio.scene.cycles.samples = 1024
     studio.scene.shlight.noise_threshold = 0.003
-    studio.compare(mean=5e-3, error=1e-3)
+    studio.compare(mean=5e-3, error=1.5e-3)  # Cycles' noise of a large lamp is 5e-4
 
 
 def test_objects_of_one_mesh_have_their_own_offsets(studio: Any) -> None:
