@@ -33,15 +33,15 @@ using Integer = std::int32_t;
 /// Hits that a script runs for at the same time.
 constexpr std::size_t kHits = 16;
 template <class T>
-struct alignas(kHits * sizeof(T)) Hits : std::array<T, kHits> {};
+struct alignas(kHits * sizeof(T)) PerHit : std::array<T, kHits> {};
 
 /// All bits of a hit that something holds for.
 constexpr Word kYes = ~0U;
 
 /// Registers of each hit, and the hits that an instruction is for.
 struct Machine {
-    Hits<Word>* registers;
-    Hits<Word> active;
+    PerHit<Word>* registers;
+    PerHit<Word> active;
     bool are_all_active;
 };
 
@@ -70,8 +70,8 @@ Word word(T value) {
 }
 
 /// Gives active hits their values.
-void keep(const Machine& machine, Word to, const Hits<Word>& values) {
-    Hits<Word>& kept = machine.registers[to];
+void keep(const Machine& machine, Word to, const PerHit<Word>& values) {
+    PerHit<Word>& kept = machine.registers[to];
     if (machine.are_all_active) {
         kept = values;
         return;
@@ -84,7 +84,7 @@ void keep(const Machine& machine, Word to, const Hits<Word>& values) {
 /// Gives active hits what a function says of them. It is asked of all, so that the loop vectorises.
 template <class Function>
 void write(const Machine& machine, Word to, Function value) {
-    Hits<Word> values;
+    PerHit<Word> values;
     for (std::size_t hit = 0; hit < kHits; ++hit) {
         values[hit] = word(value(hit));
     }
@@ -110,8 +110,8 @@ constexpr Act three = [](const Machine& m, const Instruction& at) {
 /// Gradient noise, -1 … 1, at a place in as many registers.
 template <std::size_t kCount>
 void perlin(const Machine& machine, const Instruction& at) {
-    std::array<Hits<float>, kCount> places;
-    Hits<float> zeros{}, ones{}, found{};
+    std::array<PerHit<float>, kCount> places;
+    PerHit<float> zeros{}, ones{}, found{};
     ones.fill(1);
     // One octave; of the arguments after it all are 0, which stands for no period and no footprint.
     std::array<const float*, 16> arguments{};
@@ -130,7 +130,7 @@ void perlin(const Machine& machine, const Instruction& at) {
 
 /// A. R. Smith, "Color Gamut Transform Pairs" (SIGGRAPH 1978).
 void rgb_from_hsv(const Machine& machine, const Instruction& at) {
-    std::array<Hits<Word>, 3> found;
+    std::array<PerHit<Word>, 3> found;
     for (std::size_t hit = 0; hit < kHits; ++hit) {
         const auto h = read<float>(machine, at.a, hit), s = read<float>(machine, at.a + 1, hit);
         const auto v = read<float>(machine, at.a + 2, hit);
@@ -361,8 +361,8 @@ class Places {
     /// Sends the chosen hits on from a jump; where all go, or nothing if they part.
     std::optional<Word> jump(const Machine& machine, const Instruction& at, Word from) {
         // Copies of all, and masks in place of conditions, so that the loop vectorises.
-        const Hits<Word> condition = machine.registers[at.a], active = machine.active;
-        Hits<Word> next = next_, passes = passes_;
+        const PerHit<Word> condition = machine.registers[at.a], active = machine.active;
+        PerHit<Word> next = next_, passes = passes_;
         const Word always = at.is_conditional ? 0 : kYes, back = at.to <= from ? 1 : 0;
         Word least = kYes, most = 0;
         for (std::size_t hit = 0; hit < kHits; ++hit) {
@@ -379,13 +379,13 @@ class Places {
     }
 
   private:
-    Hits<Word> next_, passes_;
+    PerHit<Word> next_, passes_;
     Word end_, first_ = 0, wait_ = 0;
 };
 
 /// Runs a script for the first `count` hits. Those that a branch parts go on together where both ways meet, which is
 /// further on in the script than the ways.
-void run(const std::vector<Instruction>& code, Hits<Word>* registers, std::size_t count) {
+void run(const std::vector<Instruction>& code, PerHit<Word>* registers, std::size_t count) {
     Machine machine{registers, {}, false};
     Places places(code.size(), count);
     while (places.choose(machine)) {
@@ -429,7 +429,7 @@ void check_one(const ShaderScript& script) {
 void run_lanes(const OperationLanes& lanes) {
     const ShaderScript& script = *lanes.script;
     const std::vector<Instruction> code = instructions(script);
-    std::vector<Hits<Word>> registers(script.registers.size());
+    std::vector<PerHit<Word>> registers(script.registers.size());
     for (std::size_t first = 0; first < lanes.count; first += kHits) {
         const std::size_t count = std::min(kHits, lanes.count - first);
         for (std::size_t i = 0; i < registers.size(); ++i) {
