@@ -102,6 +102,17 @@ EllipseInput rounded_off_contact(RandomInput& random) {
     } while (place_of_origin({disk.center, disk.half_axis_u, disk.half_axis_v}) != OriginPlace::beside_plane);
     return disk;
 }
+TEST(Disk, HalfAxesMayBeAllButOrthogonal) {
+    const Vec3d center(2, 1.98, 0), u(0, 0, 2);
+    for (const bool clip : {true, false}) {
+        const auto expected = coefficients<double>({center, u, {2, 0, 0}}, 3, clip);
+        const auto found = coefficients<double>({center, u, {2, 0, 1e-200}}, 3, clip);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_LE(std::abs(found[i] - expected[i]), 1e-14) << i;  // NaN fails
+        }
+    }
+}
+
 TEST(Disk, OneOfItsSidesIsSeenHoweverNear) {
     compare_class({"rounded off contact", rounded_off_contact}, 24, {1, 2, 8}, 1800);
 }

@@ -213,6 +213,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
 # A call, the arguments that are changed together, and the name by which they are refused.
 TOGETHER: list[tuple[str, dict[str, Any], str]] = [
     ("Scene.set_camera", {"aperture_size": 1.0, "aperture_ratio": 1e-11}, "aperture_size"),
+    ("Scene.set_camera", {"aperture_size": 1.0, "to_world": np.diag([1.0, 1e80, 1.0, 1.0])}, "aperture_size"),
     ("Scene.add_sun_light", {"angle": 3.1, "tangent": True}, "angle"),
     ("Scene.add_mesh", {"bsdf": [GGX] * 2, "emission": np.ones((3, 3)), "material_names": None}, "bsdf"),
     *(

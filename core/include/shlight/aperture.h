@@ -18,6 +18,8 @@ struct Aperture {
 
     /// Maps a point of the unit square to the aperture [m from the middle], preserving ratios of areas.
     glm::dvec2 point(const glm::dvec2& square) const;
+    /// Largest coordinate of a point [m].
+    double reach() const { return size * (ratio < 1 ? 1 / ratio : 1); }
 };
 
 /// Throws std::invalid_argument naming the argument: aperture_size, focus_distance, aperture_blades, aperture_rotation

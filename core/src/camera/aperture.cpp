@@ -52,9 +52,8 @@ void check_aperture(const Aperture& aperture) {
     if (!(std::isfinite(aperture.ratio) && aperture.ratio > 0)) {
         reject("aperture_ratio must be positive and finite");
     }
-    const double widest = aperture.size * std::max(1.0, 1 / aperture.ratio);
-    check_reach("aperture_size", widest);
-    if (!(aperture.focus_distance > 0 && widest <= kFarthest * aperture.focus_distance)) {
+    check_reach("aperture_size", aperture.reach());
+    if (!(aperture.focus_distance > 0 && aperture.reach() <= kFarthest * aperture.focus_distance)) {
         reject("focus_distance must be positive, and more than 1e-10 of the aperture");
     }
     if (aperture.blades < 0) {

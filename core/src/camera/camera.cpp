@@ -81,6 +81,9 @@ void Camera::check() const {
         reject("clip_end must be greater than clip_start");
     }
     check_aperture(aperture_);
+    for (int axis = 0; axis < 3; ++axis) {
+        check_reach("aperture_size", aperture_.reach() * largest_component(Vec3d(to_world_[axis])));
+    }
 }
 
 Camera Camera::moved(const Vec3d& way) const {

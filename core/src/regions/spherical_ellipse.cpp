@@ -50,7 +50,7 @@ class ColumnRotations {
             return;
         }
         const double difference = glm::dot(a, a) - glm::dot(b, b);
-        const double root = std::sqrt(difference * difference + twice * twice);
+        const double root = std::hypot(difference, twice);  // squares of what is all but orthogonal may be 0
         const double tangent = twice / (difference < 0 ? difference - root : difference + root);
         const double c = 1 / std::sqrt(1 + tangent * tangent);
         const double s = tangent * c;
