@@ -47,7 +47,8 @@ def blender(session: nox.Session, blender: str, numpy: str) -> None:
 
 
 FUZZ_SECONDS = 60  # of each target
-FUZZ_OPTIONS = ["-timeout=60", "-max_len=1024", "-len_control=0", "-print_final_stats=1"]
+# Scripts that never end take a minute under a sanitizer until they are ended.
+FUZZ_OPTIONS = ["-timeout=300", "-max_len=1024", "-len_control=0", "-print_final_stats=1"]
 # Python has to load these before all else.
 RUNTIMES = ["libclang_rt.asan-x86_64.so", "libstdc++.so.6"]
 # CPython keeps memory until it ends.
