@@ -187,7 +187,7 @@ void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
     if (std::find(vertices.begin(), vertices.end(), Vec3d(0)) != vertices.end()) {
         reject("vertices: the shading point lies inside a polygon");
     }
-    // Where vertices are equal, it may be that no three of them decide what the plane does.
+    // Three vertices decide nothing where two of them are equal, and the plane may still do so.
     if (may_be_edge_on(flatness.normal, vertices, epsilon) && is_edge_on(flatness.normal, vertices, epsilon)) {
         const Turns turns = turns_around_origin(flatness.normal, vertices, epsilon);
         if (turns.touch || std::abs(turns.sum) > 1) {
