@@ -92,16 +92,6 @@ TEST(Disk, AgreesWithReferenceAtOrders33And64) {
     compare(1 * kMore, {33, 64}, 1600);
 }
 
-/// The rounding of its numbers alone keeps it off the shading point.
-EllipseInput rounded_off_contact(RandomInput& random) {
-    const testing::Plane plane(random, random.direction());
-    EllipseInput disk{};
-    do {
-        const Vec3d aside = random.uniform(-0.4, 0.4) * plane.u + random.uniform(-0.4, 0.4) * plane.v;
-        disk = testing::conjugate(random, aside, plane, 1, random.uniform(0.5, 1));
-    } while (place_of_origin({disk.center, disk.half_axis_u, disk.half_axis_v}) != OriginPlace::beside_plane);
-    return disk;
-}
 TEST(Disk, HalfAxesMayBeAllButOrthogonal) {
     const Vec3d center(2, 1.98, 0), u(0, 0, 2);
     for (const bool clip : {true, false}) {
@@ -113,6 +103,16 @@ TEST(Disk, HalfAxesMayBeAllButOrthogonal) {
     }
 }
 
+/// The rounding of its numbers alone keeps it off the shading point.
+EllipseInput rounded_off_contact(RandomInput& random) {
+    const testing::Plane plane(random, random.direction());
+    EllipseInput disk{};
+    do {
+        const Vec3d aside = random.uniform(-0.4, 0.4) * plane.u + random.uniform(-0.4, 0.4) * plane.v;
+        disk = testing::conjugate(random, aside, plane, 1, random.uniform(0.5, 1));
+    } while (place_of_origin({disk.center, disk.half_axis_u, disk.half_axis_v}) != OriginPlace::beside_plane);
+    return disk;
+}
 TEST(Disk, OneOfItsSidesIsSeenHoweverNear) {
     compare_class({"rounded off contact", rounded_off_contact}, 24, {1, 2, 8}, 1800);
 }

@@ -216,7 +216,6 @@ TEST(Polygon, WithAVertexAtTheShadingPointIsRefused) {
     }
 }
 
-/// A room's floor, however little below a point on it.
 TEST(Polygon, HasItsLightInTheLeastUnitToo) {
     // A slit some vertices of which are equal, so that few of three tell on which side of their plane the point is.
     const Vertices slit = {{0.000423293008, -0.418381125, 0.908272803},  {0.000423293008, -0.166536734, 0.363686353},
@@ -230,6 +229,7 @@ TEST(Polygon, HasItsLightInTheLeastUnitToo) {
     EXPECT_EQ(coefficients<float>(tiny, 3, false), coefficients<float>(slit, 3, false));
 }
 
+/// A room's floor, however little below a point on it.
 TEST(Polygon, JustBelowTheHorizonIsUnseen) {
     for (const double below : {1e-12, 1e-9, 1e-6}) {
         const Vertices floor = {{-1, -1, -below}, {1, -1, -below}, {1, 1, -below}, {-1, 1, -below}};

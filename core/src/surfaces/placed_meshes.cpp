@@ -391,17 +391,8 @@ class PlacedMeshes::PlaceReader : public ShaderReader {
         : placed_(&placed), material_(&material), places_(places), beside_(beside) {}
 
     void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
-        const std::span<const ShadedPlace> hits = places_.subspan(first, out.size());
-        if (place == 0) {
-            placed_->read(
-                input, *material_, hits, [&](std::size_t i) -> const auto& { return hits[i].at; }, out);
-            return;
-        }
-        const auto number = static_cast<std::size_t>(place) - 1;
-        const auto of = [&](std::size_t i) -> const auto& {
-            return beside_[first + i][number];
-        };
-        placed_->read(input, *material_, hits, of, out);
+        const auto beside = beside_.subspan(place == 0 ? 0 : first);
+        placed_->read(input, *material_, static_cast<std::size_t>(place), places_.subspan(first), beside, out);
     }
 
   private:
@@ -418,12 +409,12 @@ void PlacedMeshes::run(const ShaderProgram& program, const Material& material, s
     program.evaluate(reader, places.size(), !beside.empty(), registers, results);
 }
 
-template <class PlaceOf>
-void PlacedMeshes::read(const ShaderInput& input, const Material& material, std::span<const ShadedPlace> hits,
-                        const PlaceOf& place_of, std::span<float> out) const {
+void PlacedMeshes::read(const ShaderInput& input, const Material& material, std::size_t place,
+                        std::span<const ShadedPlace> hits, std::span<const PlacesBeside> beside,
+                        std::span<float> out) const {
     const auto fill = [&](const auto& number) {
         for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = static_cast<float>(number(hits[i], place_of(i)));
+            out[i] = static_cast<float>(number(hits[i], place == 0 ? hits[i].at : beside[i][place - 1]));
         }
     };
     const auto component = static_cast<int>(input.component);

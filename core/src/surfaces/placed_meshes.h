@@ -116,10 +116,9 @@ class PlacedMeshes {
   private:
     class PlaceReader;
 
-    /// An input at hits, each with the place where it is asked for.
-    template <class PlaceOf>
-    void read(const ShaderInput& input, const Material& material, std::span<const ShadedPlace> hits,
-              const PlaceOf& place_of, std::span<float> out) const;
+    /// place: see ShaderReader; that of the hits, or one of `beside`.
+    void read(const ShaderInput& input, const Material& material, std::size_t place, std::span<const ShadedPlace> hits,
+              std::span<const PlacesBeside> beside, std::span<float> out) const;
     /// The mesh's own at the corners of the hit triangle, in its frame, of no particular length; none: it is flat.
     std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
     /// surface() of curves and spheres.

@@ -82,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
         dest="samples",
         default=4096,
         metavar="N",
-        help="samples of Cycles, at most (default: %(default)s)",
+        help="samples of Cycles, and camera rays of shlight per pixel, at most (default: %(default)s)",
     )
     add(
         "--reference-seconds",
