@@ -229,6 +229,39 @@ TEST(Polygon, HasItsLightInTheLeastUnitToo) {
     EXPECT_EQ(coefficients<float>(tiny, 3, false), coefficients<float>(slit, 3, false));
 }
 
+/// Triangles with coordinates of the least double.
+TEST(Polygon, SubnormalCoordinatesKeepTheirSigns) {
+    RandomInput random(46);
+    for (int i = 0; i < 500; ++i) {
+        Vertices least;
+        for (int j = 0; j < 3; ++j) {
+            Vec3d v = {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)};
+            // Different ones, since a triangle in a plane of two axes is edge-on.
+            const int axis = j < 2 ? 2 - j : random.integer(0, 2);
+            const double sign = random.chance(0.5) ? 1 : -1;
+            v[axis] = sign * std::numeric_limits<double>::denorm_min();
+            least.push_back(v);
+        }
+        const bool clip = random.chance(0.5);
+        const std::vector<double> alone = coefficients<double>(least, 4, clip);
+        const auto reference = truth::polygon(least, 4, clip);
+        EXPECT_LE(truth::largest_error(reference, 4, alone.data()), 1e-13 * reference.high[0] + 1e-16);
+    }
+}
+
+TEST(Polygon, IsTheSameBesideOneOfAnotherUnit) {
+    const double least = std::numeric_limits<double>::denorm_min();
+    const Vertices alone = {{0.8941097554765467, 2.1653737927460583, -least},
+                            {least, -least, 1.5095218971884485},
+                            {1.147024050377036, -1.5055298397694976, 0.9857128550531784}};
+    Vertices both = alone;
+    both.insert(both.end(), {{1e-9, 0, 1e-9}, {0, 1e-9, 1e-9}, {-1e-9, 0, 1e-9}});
+    std::vector<double> light(18);
+    polygon_coefficients<double>(both, 3, 3, false, light);
+    light.resize(9);
+    EXPECT_EQ(light, coefficients<double>(alone, 3, false));
+}
+
 /// A room's floor, however little below a point on it.
 TEST(Polygon, JustBelowTheHorizonIsUnseen) {
     for (const double below : {1e-12, 1e-9, 1e-6}) {

@@ -70,10 +70,14 @@ class TriangleSum {
     }
 
   private:
-    /// The point in which the edge from a to b meets the horizon.
+    /// The point in which the edge from a to b meets the horizon. Heights are brought near 1, since products of
+    /// subnormal ones have no digits and their reciprocal is infinite.
     static Vec3d cut(const Vec3d& a, const Vec3d& b) {
-        const double over = 1 / (a.z - b.z);
-        return {over * difference_of_products(a.z, b.x, b.z, a.x), over * difference_of_products(a.z, b.y, b.z, a.y),
+        const double scale = power_of_two_scale(std::max(std::abs(a.z), std::abs(b.z)));
+        const double a_z = scale * a.z;
+        const double b_z = scale * b.z;
+        const double over = 1 / (a_z - b_z);
+        return {over * difference_of_products(a_z, b.x, b_z, a.x), over * difference_of_products(a_z, b.y, b_z, a.y),
                 0};
     }
 

@@ -73,7 +73,7 @@ class VertexLanes {
         }
         const auto usual = hn::And(hn::Gt(largest, all(d, 1e-6)), hn::Lt(largest, all(d, 1e6)));
         if (!hn::AllTrue(d, usual)) {
-            rescale(largest);
+            rescale(hn::IfThenElse(usual, all(d, 1), power_of_two_scale(largest)));
         }
     }
 
@@ -111,9 +111,9 @@ class VertexLanes {
     }
 
   private:
-    /// Powers of two change no digit, and squares of tiny and huge coordinates stay in the range of float.
-    HWY_NOINLINE void rescale(V<D> largest) {
-        const auto scale = power_of_two_scale(largest);
+    /// Powers of two change no digit, and squares of tiny and huge coordinates stay in the range of float. A lane of a
+    /// usual unit has the scale 1, since its own subnormal coordinates would lose digits.
+    HWY_NOINLINE void rescale(V<D> scale) {
         for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
             double* v = vertices_.get() + i * kWidth;
             hn::StoreU(hn::Mul(hn::LoadU(D(), v), scale), D(), v);
