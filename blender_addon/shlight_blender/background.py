@@ -144,7 +144,7 @@ def use_cycles(
     cycles.glossy_bounces, cycles.transmission_bounces = (min(bounces[0], most) for most in bounces[1:])
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.use_fast_gi = False
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.sample_clamp_direct = 0.0
     cycles.light_sampling_threshold = 0.0
     cycles.use_adaptive_sampling = False
     cycles.use_denoising = denoise

@@ -167,6 +167,7 @@ class RenderOptions(TypedDict, total=False):
     glossy_bounces: int | None
     transmission_bounces: int | None
     filter_glossy: float
+    clamp_indirect: float
     passes: Sequence[str]
     groups: bool
     aovs: bool

@@ -17,11 +17,11 @@ from shlight_blender.export import Changes, ExportedScene, changes_of, everythin
 from shlight_blender.picture_maker import Job, PictureMaker
 
 
-def compare(studio: Any, samples: int = 1024, **bounds: float) -> None:
+def compare(studio: Any, samples: int = 1024, **bounds: float) -> Any:
     """Both pictures with bounces as the scene's settings have them."""
     studio.resolution(32, 24)
     use_cycles(studio.scene, samples, 0, bounces_of(studio.scene))
-    studio.compare(**bounds)
+    return studio.compare(**bounds)
 
 
 @pytest.mark.parametrize(("glossy", "transmission"), [(4, 12), pytest.param(1, 1, marks=pytest.mark.slow), (0, 2)])
@@ -56,6 +56,27 @@ def test_highlights_on_a_floor_are_filtered_as_in_cycles(studio: Any) -> None:
     studio.camera(location=(0, -6, 4), target=(0, 0, 0.3))
     studio.scene.shlight.max_bounces, studio.scene.cycles.blur_glossy = 3, 1.0
     compare(studio)
+
+
+def test_what_bounces_is_clamped_as_in_cycles(studio: Any) -> None:
+    """A bright square is seen in a mirror, whole, and in another mirror there, and through glass: cut."""
+    glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(1, 1, 1), Roughness=0.0, IOR=1.5)
+    mirror = studio.material("ShaderNodeBsdfAnisotropic", "Mirror", Color=(0.9, 0.6, 0.3), Roughness=0.0)
+    bright = studio.material("ShaderNodeEmission", "Bright", Color=(1, 0.5, 0.2), Strength=60)
+    upright = {"rotation_euler": (np.pi / 2, 0, 0)}
+    studio.plane(4, mirror, "Before", location=(-2, 1.5, 0), **upright)
+    studio.plane(4, mirror, "Behind", location=(-2, -1.5, 0), **upright)
+    studio.plane(0.5, bright, "Square", location=(-0.5, -0.5, 0.8), **upright)
+    studio.plane(0.5, bright, "Other", location=(0.6, 1, 0), **upright)
+    studio.box((2, 0.2, 2), glass, "Pane", location=(1.2, 0.5, 0))
+    studio.camera((0, -0.8, 0), (0, 1, 0))
+    studio.scene.shlight.max_bounces, studio.scene.cycles.sample_clamp_indirect = 6, 10.0
+    studio.scene.shlight.min_samples = 64  # one of 25 rays is reflected inside of the glass
+    # Its edges reflect it too, which Cycles cuts more.
+    own, cycles = compare(studio, mean=5e-3, error=2e-2)
+    for inside in (np.s_[10:14, 28:30, :3], np.s_[2:5, 9:13, :3]):
+        np.testing.assert_allclose(own[inside], cycles[inside], rtol=2e-2)
+    assert 9 < cycles[12, 28, :3].mean() < 10 < cycles[3, 10, :3].mean()
 
 
 @pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])

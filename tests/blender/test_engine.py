@@ -199,6 +199,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 2.5
     scene.shlight.max_bounces, scene.shlight.glossy_bounces, scene.shlight.transmission_bounces = 4, 3, 2
     scene.cycles.transparent_max_bounces, scene.cycles.film_exposure, scene.cycles.blur_glossy = 5, 0.5, 1.5
+    scene.cycles.sample_clamp_indirect = 4.0
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     studio.render("SHLIGHT")
     passed = {name: value for name, value in given.items() if name not in {"progress", "on_update", "return_report"}}
@@ -220,6 +221,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
         "glossy_bounces": 3,
         "transmission_bounces": 2,
         "filter_glossy": 1.5,
+        "clamp_indirect": 4.0,
         "threads": 1,
     }
     scene.shlight.order, scene.shlight.use_shadows, scene.render.threads_mode = "AUTO", False, "AUTO"

@@ -300,14 +300,15 @@ def test_the_lamps_that_are_not_named_are_off(empty_scene: bpy.types.Scene) -> N
 def test_cycles_has_as_many_bounces(empty_scene: bpy.types.Scene, given: list[str], bounces: int) -> None:
     scene = open_scene(Path(options.parse([]).request.scene))
     scene.shlight.max_bounces, scene.shlight.transmission_bounces = 3, 1
-    scene.cycles.glossy_bounces, scene.cycles.sample_clamp_indirect, scene.cycles.caustics_reflective = 1, 10.0, False
+    scene.cycles.glossy_bounces, scene.cycles.caustics_reflective = 1, False
+    scene.cycles.sample_clamp_direct, scene.cycles.sample_clamp_indirect = 5.0, 10.0
     prepare(scene, options.parse(given).request)
     use_cycles(scene, 4, 0, bounces_of(scene))
     cycles = scene.cycles
     kinds = (cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces)
     assert kinds == (*(bounces,) * 3, min(bounces, 1))
     assert scene.shlight.max_bounces == bounces
-    assert (cycles.sample_clamp_indirect, cycles.caustics_reflective) == (0.0, True)
+    assert (cycles.sample_clamp_direct, cycles.sample_clamp_indirect, cycles.caustics_reflective) == (0.0, 10.0, True)
 
 
 def test_without_shadows_is_over_afterwards(empty_scene: bpy.types.Scene) -> None:

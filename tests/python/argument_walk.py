@@ -149,6 +149,7 @@ SETTINGS = {
     "glossy_bounces": 1,
     "transmission_bounces": None,
     "filter_glossy": 1.0,
+    "clamp_indirect": 10.0,
     "passes": ["depth"],
     "groups": True,
     "aovs": True,

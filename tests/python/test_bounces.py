@@ -134,6 +134,51 @@ def test_a_filter_of_gloss_is_that_of_wide_lobes(roughness: float) -> None:
         assert rel_mse(lit_by_a_ball(metal), wide) <= 1e-3
 
 
+@pytest.mark.parametrize("lamp", [True, False], ids=["a lamp", "a surface"])
+def test_light_is_clamped_from_the_second_mirror_on(lamp: bool) -> None:
+    """The camera is between two mirrors, and before a square that shines."""
+    scene, radiance = shlight.Scene(), np.array([60.0, 30.0, 0.0])
+    mirror = shlight.Bsdf.ggx(0, (1, 1, 1))
+    square = 0.2 * SQUARE + [0, -0.5, 1]
+    if lamp:
+        scene.add_polygon_light(square[::-1], radiance, camera=True)
+    else:
+        scene.add_mesh(square, FACES, emission=radiance)
+    up = SQUARE[:, [0, 2, 1]]
+    scene.add_mesh(up * [4, 1, 4] + [0, 1, 0], FACES, bsdf=mirror)
+    scene.add_mesh(up * [4, 1, 4] + [0, -1, 0], FACES, bsdf=mirror)
+    scene.set_camera(looking((0, 0, 0), (0, 1, 0)), 1.6)
+    seen = {
+        clamp: shlight.render(scene, 64, 64, max_bounces=3, pixel_samples=1, max_samples=1, clamp_indirect=clamp)[
+            ..., :3
+        ]
+        for clamp in (0.0, 10.0, 100.0)
+    }
+    np.testing.assert_array_equal(seen[100.0], seen[0.0])
+    mean = seen[0.0].mean(axis=-1)
+    assert set(np.unique(mean.round(3))) >= {0.0, 30.0}
+    cut = np.isclose(seen[10.0].mean(axis=-1), 10, rtol=1e-5)
+    np.testing.assert_allclose(seen[10.0][cut], np.broadcast_to(radiance / 3, (cut.sum(), 3)), rtol=1e-5)
+    np.testing.assert_array_equal(seen[10.0][~cut], seen[0.0][~cut])
+    # The first mirror shows it whole, and higher up than the second.
+    rows = [np.flatnonzero(((mean > 0) & own).any(axis=1)) for own in (~cut, cut)]
+    assert rows[0].max() < rows[1].min()
+
+
+def test_light_that_diffuse_surfaces_reflect_is_clamped() -> None:
+    scene = room()
+    scene.set_camera(looking((0.2, -4, 0.1), (0, 1, 0)), 0.7)
+    seen = [
+        shlight.render(scene, 32, 24, passes=["diffuse_indirect"], max_bounces=2, clamp_indirect=most)[
+            "diffuse_indirect"
+        ]
+        for most in (0.0, 0.005)
+    ]
+    assert seen[0].mean(axis=-1).max() >= 0.05
+    # Each of two bounces brings so much. The pass is without the surface's own colour, and gradients may exceed it.
+    assert 0.005 <= seen[1].mean(axis=-1).max() <= 1.1 * 2 * 0.005 / 0.8
+
+
 @pytest.mark.parametrize("size", [16, 48])
 def test_a_wall_keeps_light_on_its_side(size: int) -> None:
     """A floor goes on below walls of 2 mm around a lamp, and the camera sees both sides of it from above."""

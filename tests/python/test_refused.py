@@ -88,6 +88,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "center": NO_PLACE,
     "centers": NO_VECTOR,
     "clip_start": (-1.0, 11.0),
+    "clamp_indirect": (-1, INF),
     "coefficients": (np.zeros(15), np.zeros(65 * 65), np.zeros((2, 5))),
     "cos_theta_o": (*NO_NUMBER, -0.01, 1.001, 1j),
     "cryptomatte_levels": (1,),

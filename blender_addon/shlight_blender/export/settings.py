@@ -43,6 +43,7 @@ def render_settings(scene: Any) -> dict[str, Any]:
         "glossy_bounces": int(settings.glossy_bounces),
         "transmission_bounces": int(settings.transmission_bounces),
         "filter_glossy": float(getattr(cycles, "blur_glossy", 1.0)),
+        "clamp_indirect": float(getattr(cycles, "sample_clamp_indirect", 10.0)),
         "exposure": float(getattr(cycles, "film_exposure", 1.0)),
         "threads": int(render.threads) if render.threads_mode == "FIXED" else 0,
     }

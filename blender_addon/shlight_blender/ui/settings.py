@@ -90,6 +90,7 @@ def light(layout: Any, context: Any) -> None:
     if cycles is not None:
         column.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
         layout.prop(cycles, "blur_glossy")
+        layout.prop(cycles, "sample_clamp_indirect")
     layout.prop(context.scene.shlight, "preview_max_bounces", text="Viewport")
 
 

@@ -79,6 +79,9 @@ struct RenderSettings {
     /// 0 … 100: light that diffuse surfaces reflect has come by glossy lobes that are widened as Cycles' Filter Glossy
     /// does, and by mirrors as by such lobes; 0: as they are. See least_width_after_diffuse().
     double filter_glossy = 0;
+    /// Mean of the channels that what a path brings is cut to, of light that has bounced as Cycles' Clamp Indirect
+    /// counts it; 0: nothing is cut. What a diffuse surface reflects is cut as if that were 0.8 of it.
+    double clamp_indirect = 0;
     PassSettings passes;
 };
 
@@ -100,8 +103,8 @@ double least_width_after_diffuse(double filter_glossy);
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
 /// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^14, more than 2^22 of both in the
-/// first pass, bounces of any kind outside 0 … 1024, filter_glossy outside 0 … 100, threads < 0, width or height < 1,
-/// or more than 2^28 pixels; and as PassLayout's constructor.
+/// first pass, bounces of any kind outside 0 … 1024, filter_glossy outside 0 … 100, clamp_indirect < 0 or
+/// not finite, threads < 0, width or height < 1, or more than 2^28 pixels; and as PassLayout's constructor.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha

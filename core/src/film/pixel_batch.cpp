@@ -188,7 +188,8 @@ PathSettings Picture::paths(const StoredLight* stored) const {
             stored,
             true,
             settings.filter_glossy,
-            filtered_width()};
+            filtered_width(),
+            static_cast<float>(settings.clamp_indirect)};
 }
 
 PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)
@@ -308,15 +309,20 @@ void PixelBatch::add_up(std::span<const Pixel> pixels, const SampleRange& sample
             Rgb radiance = ray_light_[ray].radiance;
             Rgb noise(0);
             Rgb by_path = ray_light_[ray].drawn;
+            Rgb cut(0);
             for (; hit < end && hits_.sample[hit] == rays_[ray].sample; ++hit) {
-                radiance += hits_.radiance[hit];
-                noise += hits_.noise[hit];
-                by_path += surfaces_.drawn_hits()[hit] != 0 ? hits_.radiance[hit] : Rgb(0);
+                const bool bounced = hits_.path[hit] != PathKind::direct;
+                const float left = bounced ? surfaces_.settings().kept(hits_.radiance[hit]) : 1.0F;
+                const Rgb own = left * hits_.radiance[hit];
+                radiance += own;
+                cut += hits_.radiance[hit] - own;
+                noise += left * left * hits_.noise[hit];
+                by_path += surfaces_.drawn_hits()[hit] != 0 ? own : Rgb(0);
             }
             const float kept = std::min(pixels[pixel].most_by_path / std::max(brightness(by_path), 1e-30F), 1.0F);
             const Rgb excess = kept < 1 ? (1 - kept) * by_path : Rgb(0);
-            if (kept < 1 && !picture_->parts.empty()) {
-                take_from_parts(pixel, excess);
+            if ((kept < 1 || cut != Rgb(0)) && !picture_->parts.empty()) {
+                take_from_parts(pixel, excess + cut);
             }
             sums[pixel].add(radiance, excess, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity,
                             rays_[ray].sample < second_half);

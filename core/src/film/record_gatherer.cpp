@@ -24,6 +24,9 @@ constexpr std::size_t kShadedAtOnce = 32 * kGroupRays;
 /// Places of a cell that are shaded, at least, and times the root of the number of rays that end there.
 constexpr std::size_t kLeastSamples = 2;
 constexpr double kSamplesPerRoot = 2;
+/// The share of a ray's light that surfaces are taken to reflect where that is clamped. A record lights surfaces of any
+/// albedo; this is that of Blender's own material.
+constexpr float kReflectance = 0.8F;
 /// In place of the number of an end.
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
@@ -205,9 +208,10 @@ void RecordGatherer::shade(std::size_t first, Shader& shader) {
     const std::size_t parts = paths_.stored->parts;
     Rgb* light = shaded_light_.data() + first * light_count_;
     for (std::size_t i = 0; i < count * paths_.max_bounces; ++i, light += parts) {
-        light[0] = shader.light[i].radiance;
+        const float kept = paths_.kept(kReflectance * shader.light[i].radiance);
+        light[0] = kept * shader.light[i].radiance;
         for (std::uint32_t group = 0; group + 1 < parts; ++group) {
-            light[1 + group] = shader.hits.apart.of(i)[LightParts::of_group(group)];
+            light[1 + group] = kept * shader.hits.apart.of(i)[LightParts::of_group(group)];
         }
         if (parts > 1) {  // lights that share shadow rays tell their groups apart only for all of these rays
             complete({light + 1, parts - 1}, light[0], parts - 2);

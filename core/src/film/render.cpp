@@ -85,6 +85,9 @@ void check_render(const RenderSettings& settings, int width, int height) {
     if (!(settings.filter_glossy >= 0 && settings.filter_glossy <= kMostFilter)) {
         reject("filter_glossy must be 0 … 100");
     }
+    if (!(settings.clamp_indirect >= 0 && std::isfinite(settings.clamp_indirect))) {
+        reject("clamp_indirect must be 0 or more, and finite");
+    }
     check_range("threads", settings.threads, 0, std::numeric_limits<int>::max());
     const PassLayout layout(settings.passes);
 }

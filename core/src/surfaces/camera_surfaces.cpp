@@ -161,16 +161,18 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
     }
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
     const Rgb radiance = lamps.radiance(part, surface, segment.light_set, by_group_, segment.least_lamp);
-    sink.add(segment, segment.emitted_bounces(), segment.throughput * radiance);
+    const Rgb throughput = kept(segment, segment.throughput * radiance) * segment.throughput;
+    sink.add(segment, segment.emitted_bounces(), throughput * radiance);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
         sink.apart.add(sink.in_apart(segment, segment.emitted_bounces()), segment.met(LightKind::emission),
-                       static_cast<std::uint32_t>(group), segment.throughput * by_group_[group]);
+                       static_cast<std::uint32_t>(group), throughput * by_group_[group]);
     }
 }
 
-void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
-                               const Sink& sink) {
+void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& whole,
+                               const Sink& sink) const {
     const std::uint32_t bounces = segment.emitted_bounces();
+    const Rgb radiance = kept(segment, whole) * whole;
     sink.add(segment, bounces, radiance);
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
         sink.apart.add(sink.in_apart(segment, bounces), segment.met(kind), group, radiance);

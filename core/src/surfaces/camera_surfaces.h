@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -53,7 +54,14 @@ struct PathSettings {
     const StoredLight* stored = nullptr;                 ///< outlives this; null: none
     bool scatters = true;                                ///< false: paths end at lobes whose direct light counts apart
     double filter_glossy = 0;                            ///< see RenderSettings
-    double least_width = 0;  ///< of lobes of microfacets that vary and that are met by a filtered path
+    double least_width = 0;    ///< of lobes of microfacets that vary and that are met by a filtered path
+    float clamp_indirect = 0;  ///< see RenderSettings
+
+    /// The share that is left of light that has bounced.
+    float kept(const Rgb& light) const {
+        const float mean = (std::abs(light.x) + std::abs(light.y) + std::abs(light.z)) / 3;
+        return clamp_indirect > 0 && mean > clamp_indirect ? clamp_indirect / mean : 1.0F;
+    }
 };
 
 /// Camera rays beside another, as far away as its share of the pixel is wide.
@@ -93,6 +101,7 @@ class CameraSurfaces {
         : scene_(&scene), materials_(materials), settings_(settings), has_bodies_(has_absorbing(scene.materials())) {}
 
     void follow(const PathSettings& settings) { settings_ = settings; }
+    const PathSettings& settings() const { return settings_; }
     /// rays: those of a pixel, rays_per_pixel, follow each other. neighbours: of each ray, or none if no program takes
     /// differences. light: one for each ray. Clears the hits first.
     void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
@@ -124,6 +133,7 @@ class CameraSurfaces {
         Rgb absorption{0}, absorption_beyond{0};
         double travelled = 0;   ///< from the camera to where `whole` begins [m]
         double least_lamp = 0;  ///< [sr], of those that it sees; see add_narrow_lamps()
+        float chance = 1;       ///< with which Cycles' path goes through the interfaces, and is not reflected
 
         bool sees_lights() const { return source != RaySource::scattered && source != RaySource::held_out; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -182,6 +192,7 @@ class CameraSurfaces {
         Segment next(RaySource origin, PathKind by, bool through, const Rgb& share, const Ray& way) const {
             Segment on = Segment::next(origin, by, through, share, way);
             on.travelled = travelled + distance;
+            on.chance = chance;
             return on;
         }
     };
@@ -247,8 +258,13 @@ class CameraSurfaces {
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
     /// Light that a segment meets. kind: see Segment::met.
-    static void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
-                          const Sink& sink);
+    void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
+                   const Sink& sink) const;
+    /// The share that is left of light that is emitted where a segment ends. A path of Cycles goes one way at an
+    /// interface.
+    float kept(const Segment& segment, const Rgb& radiance) const {
+        return segment.emitted_bounces() > 0 ? settings_.kept(radiance / segment.chance) : 1.0F;
+    }
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
     PlacesBeside places_beside(const SurfacePlace& place, const Surface& surface, const NeighbourRays& neighbours,

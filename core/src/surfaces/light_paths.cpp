@@ -117,6 +117,9 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Interface interface = {double{width(surface, refraction.alpha)}, ior(surface, refraction), reflection, frame,
                                  in_frame(view_cosine(frame.z, surface.towards_viewer))};
     const Rgb weight = surface.throughput * color(surface, refraction.weight) / static_cast<float>(division.paths);
+    const double passed =
+        reflection == InterfaceReflection::apart ? 1 - interface_reflectance(interface.view.z, interface.ior) : 1.0;
+    const auto chance = static_cast<float>(std::min(passed * average(color(surface, refraction.weight)), 1.0));
     const std::uint32_t sample = rays_[surface.ray].sample * division.paths + division.path;
     const auto path = [&](bool reflected, const Rgb& share, const Ray& way) {
         Segment next =
@@ -125,6 +128,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
                 .from(scene_->materials()[surface.point.material])
                 .drawn(interface.alpha > kSmooth, division.is_broad);
         next.least_lamp = interface.least_lamp();
+        next.chance *= chance;
         return next;
     };
     if (interface.is_rough()) {

@@ -128,7 +128,7 @@ class Cycles:
         render.resolution_x = render.resolution_y = self._size
         render.resolution_percentage = 100
         scene.cycles.pixel_filter_type = "BOX"
-        scene.cycles.blur_glossy = 0.0  # which other renderers do not have
+        scene.cycles.blur_glossy = scene.cycles.sample_clamp_indirect = 0.0  # which other renderers do not have
         for thing in self._scene.things:
             _add_blender_mesh(bpy, thing)
         for lamp in self._scene.lamps:
