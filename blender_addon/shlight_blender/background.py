@@ -22,6 +22,7 @@ import numpy.typing as npt
 from . import register as register_addon
 from .compat import pixels_of, set_sample_range
 from .names import name_of
+from .shown_images import rendered_image
 from .worker_process import SceneError
 
 START = Path(__file__).with_name("start.py")
@@ -187,7 +188,9 @@ def leave_plain(render: Any) -> None:
 
 def last_picture(scene: Any, path: Path) -> npt.NDArray[np.float32]:
     """The picture of the last render (height, width, 4), row 0 on top, by way of a file: Blender knows no other."""
-    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+    rendered = rendered_image()
+    assert rendered is not None
+    rendered.save_render(str(path), scene=scene)
     image = bpy.data.images.load(str(path), check_existing=False)
     pixels = np.ascontiguousarray(pixels_of(image))
     bpy.data.images.remove(image)

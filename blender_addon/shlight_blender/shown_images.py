@@ -21,6 +21,11 @@ SETTLE_SECONDS = 0.5
 _unsaved: set[str] = set()  # names of images whose pixels have changed
 
 
+def rendered_image() -> Any | None:
+    """Blender's image of the last render, which a file may have under another name than Render Result."""
+    return next((image for image in bpy.data.images if image.type == "RENDER_RESULT"), None)
+
+
 def make_image(name: str, pixels: Pixels, folder: Path, *, is_light: bool = True) -> Any:
     """A new image of pixels (height, width, 4), row 0 at the bottom, saved in a folder.
 

@@ -14,8 +14,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from shlight_blender.background import last_picture
 from shlight_blender.compare import job, measure, panel, places, results
 from shlight_blender.compare.pictures import PALETTE, in_palette
+from shlight_blender.shown_images import rendered_image
 
 Image = NDArray[np.float32]
 
@@ -130,6 +132,16 @@ def test_figures_pictures_and_places_are_true(still_life: Any) -> None:
     bpy.ops.shlight.remove_comparison()
     assert files() == files_before
     assert not any(image.name.startswith("shlight ") for image in bpy.data.images)
+
+
+def test_the_last_render_may_have_another_name(studio: Any, tmp_path: Path) -> None:
+    studio.plane(4, studio.material("ShaderNodeEmission", "Bright", Strength=2))
+    studio.camera()
+    studio.render("SHLIGHT")
+    rendered = rendered_image()
+    assert rendered is not None
+    rendered.name = "park"
+    assert last_picture(studio.scene, tmp_path / "picture.exr")[..., :3].max() == 2
 
 
 def test_without_a_reference_both_are_compared(studio: Any) -> None:

@@ -15,11 +15,11 @@ from bpy.app.handlers import persistent
 from .. import record
 from ..light_mix import ONE, factors_of, follow_lamps
 from ..names import with_name
-from ..shown_images import draw_image, make_image
+from ..shown_images import draw_image, make_image, rendered_image
 from ..windows import areas, redraw
 from .base import draw_text, panel
 
-MIX, RENDERED = "shlight Light Mix", "Render Result"
+MIX = "shlight Light Mix"
 ROWS = 5
 
 _folder: Path | None = None  # of the image's file
@@ -30,10 +30,10 @@ def show_mix(context: Any) -> None:
     redraw("VIEW_3D")
     factors, mix = factors_of(context.scene), record.last.mix
     if factors is None or mix_problem(context) or (mix.is_rendered and factors == mix.factors):
-        _exchange(MIX, RENDERED)
+        _exchange(bpy.data.images.get(MIX), rendered_image())
     else:
         _draw(mix.picture(factors))
-        _exchange(RENDERED, MIX)
+        _exchange(rendered_image(), bpy.data.images.get(MIX))
 
 
 def mix_problem(context: Any) -> str:
@@ -59,11 +59,11 @@ def _draw(pixels: Any) -> None:
     make_image(MIX, pixels, _folder)
 
 
-def _exchange(before: str, after: str) -> None:
+def _exchange(before: Any | None, after: Any | None) -> None:
     for area in areas("IMAGE_EDITOR"):
         space = area.spaces.active
-        if space.image is not None and space.image.name == before:
-            space.image = bpy.data.images.get(after)
+        if space.image is not None and space.image == before:
+            space.image = after
             area.tag_redraw()
 
 
