@@ -18,8 +18,9 @@ constexpr int kPilotStep = 8;
 constexpr int kMostPilotPixels = 16;
 /// Pilot pixels per batch.
 constexpr std::size_t kPilotBatch = 32;
-/// Error of light that is summed up over faces ÷ the noise that is asked for: it is smooth, and smaller than that.
-constexpr double kFaceShare = 0.5;
+/// Bound of the error of light that is summed up over faces ÷ the noise that is asked for. The error is smooth, and a
+/// third of its bound inside a dome, a fifth where thousands of faces are about.
+constexpr double kFaceShare = 1;
 
 /// Turns the bits of a coordinate that a seed names: sets that are spread evenly stay so.
 double scrambled(double coordinate, std::uint32_t seed) {
