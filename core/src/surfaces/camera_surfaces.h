@@ -257,8 +257,8 @@ class CameraSurfaces {
     }
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
-    /// Light that a segment meets. kind: see Segment::met.
-    void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
+    /// Light that a segment meets. kind: see Segment::met. whole: before it is clamped.
+    void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& whole,
                    const Sink& sink) const;
     /// The share that is left of light that is emitted where a segment ends. A path of Cycles goes one way at an
     /// interface.
