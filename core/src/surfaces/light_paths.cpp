@@ -45,6 +45,8 @@ constexpr double kFiltered = 0.75;
 constexpr double kSmooth = 1e-3;
 /// 1 ± this of an index, whose rays go straight on at any roughness.
 constexpr double kNoBend = 1e-3;
+/// The least Segment::chance of an interface: microfacets may let through what a smooth surface would reflect.
+constexpr double kLeastChance = 0.01;
 /// Lamps that each path looks at.
 constexpr std::size_t kMostLamps = 4;
 /// Seeds of directions through interfaces, beside those of lobes, and of those to lamps.
@@ -119,7 +121,8 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Rgb weight = surface.throughput * color(surface, refraction.weight) / static_cast<float>(division.paths);
     const double passed =
         reflection == InterfaceReflection::apart ? 1 - interface_reflectance(interface.view.z, interface.ior) : 1.0;
-    const auto chance = static_cast<float>(std::min(passed * average(color(surface, refraction.weight)), 1.0));
+    const auto chance =
+        static_cast<float>(std::clamp(passed * average(color(surface, refraction.weight)), kLeastChance, 1.0));
     const std::uint32_t sample = rays_[surface.ray].sample * division.paths + division.path;
     const auto path = [&](bool reflected, const Rgb& share, const Ray& way) {
         Segment next =
