@@ -122,6 +122,7 @@ QUICK = (
 NARROW_RIMS = ("fibres_0.5", "velvet_0.3", "velvet_0.5")  # which are bright along the outline alone
 QUICK_FILMS = ("film_350_0.1", "film_350_0.6", "film_1000_1", "film_strong")
 QUICK_TOONS = ("toon_diffuse_0.5_0", "toon_diffuse_0.5_1", "toon_glossy_0.5_0", "toon_glossy_0.9_1")
+COATED = "brushed_dielectric"
 SPOTS = ("toon_diffuse_0.1_0", "toon_glossy_0.1_0")  # of few pixels with a hard edge
 COLUMNS, SIDE = 8, 16  # balls beside each other; pixels of each
 
@@ -179,9 +180,9 @@ def bounds(name: str, light: str, is_whole: bool) -> tuple[float, float]:
         return 3e-2, 5e-3
     if name in SPOTS:
         return 3e-2, 1e-1
-    # Cycles' noise of narrow reflections of lights with an extent is 0.4 % of a ball's light. Of a brushed ball, 0.6 %
-    # is in parts of its rim that the rays of 16 by 16 pixels miss or meet.
-    mean = 1e-2 if (is_whole and light != LIGHTS[0]) or "brushed" in name else 6e-3
+    # Cycles' noise of narrow reflections of lights with an extent is 0.4 % of a ball's light. A point of light is in a
+    # coat of roughness 0.03 as a spot far smaller than a pixel, which few rays of either engine meet.
+    mean = 1e-2 if (is_whole and light != LIGHTS[0]) or name == COATED else 6e-3
     return mean, 1e-2 if name in NARROW_RIMS else 2.5e-3 if "toon" in name else 1.5e-3
 
 
