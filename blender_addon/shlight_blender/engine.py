@@ -210,6 +210,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         record.last.statistics = result.report
         if inexact := inexact_light(record.last.statistics):
             record.last.report.add("Light", inexact, Effect.SLIGHT)
+        exported.meshes.remark_doubled(record.last.statistics.doubled, record.last.report)
         stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.meshes.names())
         layers = mean.layers
         if denoises:

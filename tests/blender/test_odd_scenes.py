@@ -41,8 +41,9 @@ def test_a_scene_without_objects_shows_the_world(studio: Any) -> None:
 
 
 def test_faces_that_lie_on_others_are_named(studio: Any) -> None:
-    """Two turned squares in one place, cut by other diagonals, and a mesh that has a face twice; a box like another,
-    elsewhere, has none."""
+    """Two turned squares in one place, cut by other diagonals, a mesh that has a face twice, and a small square in the
+    middle of a large one's side; those that nobody sees (a box on the floor) and a box like another, elsewhere, do not
+    count."""
     studio.simple_scene()
     corners, faces = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]), [(0, 1, 2, 3)]
     turned = {"location": (2, 1, 0.7), "rotation_euler": (0.3, 0.2, 0.1)}
@@ -50,10 +51,11 @@ def test_faces_that_lie_on_others_are_named(studio: Any) -> None:
     studio.mesh("Square again", corners, [(1, 2, 3), (1, 3, 0)], **turned)
     studio.mesh("Twice", [*corners, *corners], [*faces, (4, 5, 6, 7)], location=(-2, 1, 0.3))
     studio.link("Copy", bpy.data.objects["Box"].data, (0.4, 2.1, 0.3))
+    studio.mesh("Small", 0.3 * corners + (-1, -1, 0), faces)
     studio.render("SHLIGHT")
     (message,) = record.last.report
     assert "lie on others" in message.text
-    assert sorted(message.places) == ["Object 'Square again'", "Object 'Square'", "Object 'Twice'"]
+    assert sorted(message.places) == [f"Object '{name}'" for name in ("Plane", "Small", "Square again", "Square", "Twice")]
 
 
 @pytest.mark.parametrize("missing", ["library", "texture"])

@@ -27,7 +27,7 @@ from ..compat import (
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .mesh_attributes import COLOR, OF_CURVES, mesh_attributes
-from .triangle_geometry import face_normals, unit
+from .triangle_geometry import face_normals
 
 Integers = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.float32]
@@ -100,41 +100,6 @@ def _last_of_each(joined: Joined, loops: int, corners: Integers) -> NDArray[np.i
         if np.array_equal(found, last):
             return last
         last = found
-
-
-# Triangles of a scene up to which doubled ones are looked for, in a second.
-MOST_TRIANGLES = 300_000
-# Distance at which places count as the same ÷ the scene's largest coordinate, and the same of directions.
-SAME_PLACE, SAME_DIRECTION = 1e-6, 1e-4
-SLIVER = 1e-2  # sine of an angle of a triangle
-# Odd numbers that make one of ten; a chance hit among a million edges has a probability of 3e-8.
-MIXED = 2 * np.random.default_rng(0).integers(2**63, size=10, dtype=np.uint64) + np.uint64(1)
-
-
-def doubled(corners: Sequence[NDArray[Any]]) -> list[bool]:
-    """For each (n, 3, 3) array of triangles in the world: whether any lies on another triangle that shares an edge.
-
-    These are all that two meshes of the same polygons have, however these are cut into triangles.
-    """
-    counts = [len(own) for own in corners]
-    if sum(counts) == 0:
-        return [False] * len(counts)
-    start = np.concatenate(corners)
-    end, third = np.roll(start, -1, axis=1), np.roll(start, -2, axis=1)
-    along, across = unit(end - start, 0.0), third - start
-    inward = across - (across * along).sum(axis=-1, keepdims=True) * along
-    # Slivers, which cutting leaves, cover nothing.
-    has_area = np.linalg.norm(inward, axis=-1) > SLIVER * np.linalg.norm(across, axis=-1)
-    inward = unit(inward, 0.0)
-    same = max(float(np.abs(start).max()) * SAME_PLACE, np.finfo(np.float64).tiny)
-    # The middle of an edge, its length, and squares of its direction are the same for both of its directions.
-    length = np.linalg.norm(end - start, axis=-1, keepdims=True)
-    told = [0.5 * (start + end) / same, length / same, inward / SAME_DIRECTION, along**2 / SAME_DIRECTION]
-    grid = np.rint(np.concatenate(told, axis=-1)).astype(np.int64).astype(np.uint64)
-    _, number, often = np.unique((grid * MIXED).sum(axis=-1)[has_area], return_inverse=True, return_counts=True)
-    mesh = np.repeat(np.arange(len(counts)), counts)[:, None].repeat(3, axis=1)[has_area]
-    found = np.bincount(mesh[often[number] > 1], minlength=len(counts))
-    return [bool(each) for each in found]
 
 
 class Undisplaced(NamedTuple):

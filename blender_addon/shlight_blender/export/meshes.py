@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
@@ -23,7 +23,7 @@ from .dicing import diced
 from .displacement import displace
 from .linking import Links
 from .materials import Surface, read_material
-from .mesh_arrays import MOST_TRIANGLES, MeshArrays, complete, doubled, flattened, object_arrays
+from .mesh_arrays import MeshArrays, complete, flattened, object_arrays
 from .mesh_attributes import UV
 from .nodes import Surroundings
 from .strands import CURVES, HAIR, strands_of
@@ -102,7 +102,6 @@ class KeptMesh:
     is_of_strands: bool  # see strands.py
     group: str | None  # see PassWishes.light_part
     report: ExportReport
-    corners: NDArray[np.float64]  # of its triangles; none if there are too many to look for doubled ones
     transforms: list[Matrix] = field(default_factory=list)
     object_values: list[list[float]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
@@ -126,7 +125,6 @@ class SceneMeshes:
         self._kept: dict[tuple[Any, ...], KeptMesh] = {}
         self._surfaces: dict[Any, tuple[Surface, ExportReport]] = {}  # by materials
         self._override: Any = None
-        self._doubled: set[str] = set()
         self.report = ExportReport()
 
     def begin(self, changes: Changes, surroundings: Surroundings, material_override: Any = None) -> None:
@@ -254,9 +252,8 @@ class SceneMeshes:
             arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
-        corners = np.empty((0, 3, 3)) if arrays is None else _corners(arrays)
         of_place, group = is_cut or _is_displaced(surfaces) or dicing is not None, self._group(shown)
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, False, group, report, corners)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, of_place, False, group, report)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             geometry_offset, shading_offset = terminator_offsets(shown)
@@ -293,8 +290,8 @@ class SceneMeshes:
         attributes, depsgraph = self._attributes(surfaces), self._surroundings.depsgraph
         strands = strands_of(kind, shown, place, sorted(attributes), depsgraph, report)
         owner, group = _owner(instance, depsgraph), self._group(shown)
-        none, corners = np.zeros(len(surfaces), dtype=np.int64), np.empty((0, 3, 3))
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, False, True, group, report, corners)
+        none = np.zeros(len(surfaces), dtype=np.int64)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, False, True, group, report)
         if strands is None:
             return made
         names = sorted(_attribute_names(surfaces))
@@ -361,34 +358,19 @@ class SceneMeshes:
                 text = f"its emissive faces are up to {lights} lights, which take long to render"
                 self.report.add(use.place, text, Effect.SLIGHT)
             _place(use)
-        if self._changes.all_shapes:
-            self._doubled = self._find_doubled()
-        for place in sorted(self._doubled):
-            self.report.add(place, "some of its faces lie on others, where Cycles' shadows have dark patches")
         return emits
 
-    def _find_doubled(self) -> set[str]:
-        """The objects with a face that lies on another one, as the report names them."""
-        count = sum(len(use.corners) * len(use.transforms) for use in self._seen.values())
-        if count > MOST_TRIANGLES:
-            return set()
-        names, corners = [], []
-        for use in self._seen.values():
-            for to_world, label in zip(use.transforms, use.labels, strict=True):
-                names.append(f"Object '{label.name}'")
-                corners.append(use.corners @ to_world[:3, :3].T + to_world[:3, 3])
-        return {name for name, is_doubled in zip(names, doubled(corners), strict=True) if is_doubled}
+    def remark_doubled(self, doubled: Iterable[tuple[int, int]], report: ExportReport) -> None:
+        """Names the objects of `shlight.RenderReport.doubled`."""
+        labels = {use.mesh.index: use.labels for use in self._kept.values() if use.mesh is not None}
+        for mesh, instance in doubled:
+            place = f"Object '{labels[mesh][instance].name}'"
+            report.add(place, "some of its faces lie on others, which Cycles draws black or with dark patches")
 
 
 def _place_of(shown: Any) -> str:
     """An object as the report names it."""
     return f"Object '{name_of(shown)}'"
-
-
-def _corners(arrays: MeshArrays) -> NDArray[np.float64]:
-    if len(arrays.triangles) > MOST_TRIANGLES:
-        return np.empty((0, 3, 3))
-    return arrays.vertices[arrays.triangles].astype(np.float64)
 
 
 def _place(use: KeptMesh) -> None:

@@ -120,6 +120,9 @@ class RayTracer {
     void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const;
     /// Whether anything lies on each ray (1) or not (0); spans of the same length.
     void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
+    /// Adds the parts that shadow rays may meet and whose boxes are within a radius of a point: their instances and
+    /// triangles alone.
+    void near(const Vec3f& point, float radius, std::vector<RayHit>& found) const;
 
   private:
     class Impl;

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
+#include <vector>
 
 #include "shlight/types.h"
 
@@ -15,6 +17,14 @@ namespace shlight {
 enum class RenderStage { camera_rays, views, light, shadows, shadow_rays, pixels };
 inline constexpr std::array<const char*, 6> kRenderStages = {"camera rays", "views",       "light",
                                                              "shadows",     "shadow rays", "pixels"};
+
+/// An instance of a mesh: Scene::MeshNumber, and its number among the mesh's instances.
+struct MeshInstance {
+    std::uint64_t mesh;
+    std::uint32_t instance;
+
+    auto operator<=>(const MeshInstance&) const = default;
+};
 
 /// Statistics of a rendered picture.
 struct RenderReport {
@@ -33,6 +43,10 @@ struct RenderReport {
     double seconds = 0;
     double seconds_left = 0;  ///< that are probably left; 0 while nothing is known of them
     std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
+
+    /// Whose faces lie on others where the camera sees them: rays that begin there in float may meet these. Ascending;
+    /// empty until the picture is whole.
+    std::vector<MeshInstance> doubled{};
 
     /// Adds what is a sum over parts of the work.
     RenderReport& operator+=(const RenderReport& part);

@@ -53,6 +53,8 @@ class SceneRays {
     /// The first surface that each ray meets, opaque or not.
     void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const;
     void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const;
+    /// Adds what RayTracer::near() finds of all surfaces.
+    void near(const Vec3f& point, float radius, std::vector<RayHit>& found) const;
     /// The share of light that reaches the end of each ray. transparent_bounces: surfaces that a ray passes through, at
     /// most.
     void visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;

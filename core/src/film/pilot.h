@@ -11,6 +11,7 @@
 #include "film/pixel_batch.h"
 #include "film/refinement.h"
 #include "shlight/parallel.h"
+#include "shlight/render_report.h"
 
 namespace shlight {
 
@@ -21,5 +22,8 @@ std::vector<glm::dvec2> pixel_points(const Refinement& refinement, std::uint32_t
 /// Shades a few of the picture's pixels, and sets by them how wrong each light may be and where the environment is
 /// open.
 void look_ahead(Picture& picture, const Stopped& stopped);
+
+/// RenderReport::doubled.
+std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& stopped);
 
 }  // namespace shlight

@@ -103,6 +103,7 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     std::optional<Picture> picture;
     std::optional<LightLoan> light;
     std::optional<ProgressiveRenderer> renderer;
+    std::vector<MeshInstance> doubled;
     std::atomic<bool> is_prepared = false;
     const auto work = [&](const Watch& caller) {
         Refinement refinement(width, height, settings.sampling, camera.has_depth_of_field());
@@ -115,6 +116,7 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
         renderer.emplace(*picture, std::move(refinement), light->light(), image, passes, watch, start);
         is_prepared = true;
         renderer->run(caller);
+        doubled = find_doubled(*picture, caller.stopped);
     };
     const auto look = [&] { return is_prepared ? renderer->look() : !watch.progress || watch.progress(0); };
     const bool is_watched = watch.progress || watch.on_update;
@@ -122,7 +124,9 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     if (watch.progress && !watch.progress(1.0)) {
         throw RenderCancelled();
     }
-    return renderer->report();
+    RenderReport report = renderer->report();
+    report.doubled = std::move(doubled);
+    return report;
 }
 
 }  // namespace shlight

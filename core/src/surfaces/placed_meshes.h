@@ -100,6 +100,8 @@ class PlacedMeshes {
     const Label& label(const RayHit& hit) const;
     /// MeshUse::is_holdout of what was hit.
     bool is_holdout(const RayHit& hit) const { return mesh_of(placements_[hit.instance]).is_holdout; }
+    /// Whether a triangle lies on a point of another surface, within the error of that point; its edges do not count.
+    bool covers(const RayHit& triangle, const SurfacePoint& point) const;
     /// Whether the viewer sees the mesh's back.
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     /// The radiance that the material emits to the side of the viewer.

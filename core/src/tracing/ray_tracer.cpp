@@ -277,4 +277,24 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
     }
 }
 
+void RayTracer::near(const Vec3f& point, float radius, std::vector<RayHit>& found) const {
+    struct Search {
+        const std::vector<TracedInstance>& instances;
+        std::vector<RayHit>& hits;
+    } search{impl_->instances, found};
+    const auto note = [](RTCPointQueryFunctionArguments* given) {
+        const auto& [instances, hits] = *static_cast<const Search*>(given->userPtr);
+        const std::uint32_t instance = given->context->instID[0];
+        if ((instances[instance].seen_by & kShadowRay) != 0) {
+            const std::vector<std::uint32_t>& numbers = instances[instance].tree->impl_->numbers;
+            hits.push_back({instance, numbers.empty() ? given->primID : numbers[given->primID]});
+        }
+        return false;  // the radius stays
+    };
+    RTCPointQuery query{point.x, point.y, point.z, 0, radius};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(impl_->scene.get(), &query, &context, note, &search);
+}
+
 }  // namespace shlight

@@ -76,6 +76,12 @@ void SceneRays::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
     }
 }
 
+void SceneRays::near(const Vec3f& point, float radius, std::vector<RayHit>& found) const {
+    for (const auto& tracer : {opaque_, transparent_}) {
+        if (tracer != nullptr) tracer->near(point, radius, found);
+    }
+}
+
 void SceneRays::visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const {
     std::array<std::uint8_t, kRaysAtOnce> blocked{};
     for (std::size_t first = 0; first < rays.size(); first += kRaysAtOnce) {
