@@ -121,18 +121,25 @@ TEST(LobeRays, AnInterfaceHasTheLightOfItsRays) {
         for (const double ior : {1.45, 1 / 1.45}) {
             Vec3d drawn(0);
             Vec3d integral(0);
+            double share = 0;
+            double density = 0;
             for (std::uint32_t i = 0; i < kDrawn; ++i) {
                 const glm::dvec2 point = SobolSequence(3).point(i);
                 const InterfaceRay ray = sample_interface(0.3, ior, view, point, reflection, sobol_beyond(i, 3).x);
+                share += ray.weight > 0 ? 1.0 / kDrawn : 0.0;
                 drawn += ray.weight * Vec3d(1, ray.way.x, ray.way.z) / (1.0 * kDrawn);
                 const double up = 2 * point.x - 1;
                 const double across = std::sqrt(1 - up * up);
                 const double azimuth = 2 * std::numbers::pi * point.y;
                 const Vec3d way(across * std::cos(azimuth), across * std::sin(azimuth), up);
-                integral += interface_value(0.3, ior, view, way, reflection) * Vec3d(1, way.x, way.z) *
-                            (4 * std::numbers::pi / kDrawn);
+                const InterfaceValue own = interface_value(0.3, ior, view, way, reflection);
+                density += own.density * (4 * std::numbers::pi / kDrawn);
+                if (own.density > 0) {
+                    integral += own.value * Vec3d(1, way.x, way.z) * (4 * std::numbers::pi / kDrawn);
+                }
             }
             EXPECT_LE(glm::distance(drawn, integral), 2e-3) << ior;
+            EXPECT_LE(std::abs(share - density), 2e-3) << ior;
         }
     }
 }

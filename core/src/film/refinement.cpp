@@ -301,7 +301,7 @@ float Refinement::most_by_path(int column, int row, int level, std::span<const f
     // One ray that others replace may be a bright dot itself.
     const std::size_t pixel = index(column, row);
     const double own = kept_samples(states_[pixel].level) > 0 ? mean(glm::abs(color(image, pixel))) : 0.0;
-    return static_cast<float>(samples(level) * std::max(*middle, own));
+    return static_cast<float>(samples(level) * std::max({*middle, own, std::sqrt(least_square_)}));
 }
 
 bool Refinement::is_touched(int column, int row) const {

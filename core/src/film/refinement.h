@@ -135,7 +135,8 @@ class Refinement {
     double error_between(int column, int row, std::span<const float> image) const;
     /// The noise of the pixel and of those around it tells the causes. variance: of one camera ray.
     Causes causes(int column, int row, double variance) const;
-    /// So much that a ray brings its pixel, at this level, no more light than there is around it already.
+    /// So much that a ray brings its pixel, at this level, no more light than there is around it already, or a tenth of
+    /// the picture's mean: where paths bring all light, nothing is there before.
     float most_by_path(int column, int row, int level, std::span<const float> image) const;
     double neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const;
 

@@ -37,23 +37,28 @@ double interface_reflectance(double cosine, double ior) {
     return 0.5 * a * a * (1 + b * b);
 }
 
-double interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way, InterfaceReflection reflection) {
+InterfaceValue interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way,
+                               InterfaceReflection reflection) {
     const bool reflected = way.z > 0;
     const Vec3d sum = reflected ? view + way : view + ior * way;
     const Vec3d half = glm::normalize(sum.z < 0 ? -sum : sum);
     const double cosine = glm::dot(view, half);
     const double beyond = -glm::dot(way, half);
-    const double reflectance = interface_reflectance(cosine, ior);
+    const double reflectance = interface_reflectance(std::abs(cosine), ior);
     const double passed = reflection == InterfaceReflection::none && reflectance < 1 ? 1.0 : 1 - reflectance;
     const double drawn = reflection == InterfaceReflection::drawn ? reflectance : 0.0;
-    if (!(cosine > 0) || (beyond > 0) == reflected) {
-        return 0;
-    }
     // The sine is used, since 1 - cos² would lose the digits that decide the peak of a narrow lobe.
     const double across = half.x * half.x + half.y * half.y + alpha * alpha * half.z * half.z;
     const double normals = alpha * alpha / (std::numbers::pi * across * across);
-    const double seen = normals / (1 + hidden(alpha, view.z) + hidden(alpha, way.z)) / view.z;
-    return reflected ? drawn * seen / 4 : passed * seen * cosine * ior * ior * beyond / glm::dot(sum, sum);
+    const double visible = normals / (1 + hidden(alpha, view.z)) / view.z;
+    const double spread = reflected ? 0.25 : std::abs(cosine * ior * ior * beyond) / glm::dot(sum, sum);
+    const double value = (reflected ? drawn : passed) * visible * seen_share(alpha, view.z, way.z) * spread;
+    const double chosen = reflected                                  ? drawn
+                          : reflection == InterfaceReflection::drawn ? passed
+                          : reflectance < 1                          ? 1.0
+                                                                     : 0.0;
+    const bool is_drawn = cosine > 0 && (beyond > 0) != reflected;
+    return {value, is_drawn ? chosen * visible * spread : 0.0};
 }
 
 InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,

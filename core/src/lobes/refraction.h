@@ -25,9 +25,15 @@ struct InterfaceRay {
 /// Whether an interface's reflection takes its share of drawn rays, is brought by others, or there is none.
 enum class InterfaceReflection : std::uint8_t { drawn, apart, none };
 
-/// f·cos of an interface: the weight of the directions of sample_interface() times their density. way: unit, in the
-/// shading frame; ior: not 1.
-double interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way, InterfaceReflection reflection);
+struct InterfaceValue {
+    double value = 0;    ///< f·cos
+    double density = 0;  ///< of sample_interface() [1/sr]
+};
+
+/// way: unit, in the shading frame; ior: not 1. As in Cycles, light is let through, too, by half vectors that no
+/// microfacet has, since it would be seen from behind: their density is 0.
+InterfaceValue interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way,
+                               InterfaceReflection reflection);
 
 /// A direction through the interface. alpha: of its GGX distribution, whose visible normals the point draws; view:
 /// unit, in the xz-plane, above the horizon; choice: of reflection where it is drawn.

@@ -160,7 +160,7 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
         return;
     }
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
-    const Rgb radiance = lamps.radiance(part, surface, segment.light_set, by_group_, segment.least_lamp);
+    const Rgb radiance = lamps.radiance(part, surface, segment.light_set, by_group_, segment.density);
     const Rgb throughput = kept(segment, segment.throughput * radiance) * segment.throughput;
     sink.add(segment, segment.emitted_bounces(), throughput * radiance);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {

@@ -131,9 +131,9 @@ class CameraSurfaces {
         std::optional<std::uint32_t> light_set{};     ///< of the surface that has reflected it; see MeshUse
         /// [1/m] of the bodies that it runs in, as far as they are known, and of those behind its end.
         Rgb absorption{0}, absorption_beyond{0};
-        double travelled = 0;   ///< from the camera to where `whole` begins [m]
-        double least_lamp = 0;  ///< [sr], of those that it sees; see add_narrow_lamps()
-        float chance = 1;       ///< with which Cycles' path goes through the interfaces, and is not reflected
+        double travelled = 0;                                      ///< from the camera to where `whole` begins [m]
+        double density = std::numeric_limits<double>::infinity();  ///< see drawn_part(); infinite: no lamp is drawn
+        float chance = 1;  ///< with which Cycles' path goes through the interfaces, and is not reflected
 
         bool sees_lights() const { return source != RaySource::scattered && source != RaySource::held_out; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -342,13 +342,13 @@ class CameraSurfaces {
         Vec3d view;  ///< in the frame
 
         bool is_rough() const;
-        /// [sr], of the lamps that its rays are likely to meet.
-        double least_lamp() const;
     };
-    /// Adds the light of lamps that are narrower than what a rough interface spreads. Its rays see the others.
+    /// Adds the light of lamps through a rough interface by directions to them; see drawn_part().
     /// path: to the side of `frame`, of which the lamps are.
-    void add_narrow_lamps(const Surface& surface, const Interface& interface, const ShadingFrame& frame,
-                          const Segment& path, std::uint32_t seed, std::uint32_t number, const Sink& sink);
+    void add_drawn_lamps(const Surface& surface, const Interface& interface, const ShadingFrame& frame,
+                         const Segment& path, std::uint32_t seed, std::uint32_t number, const Sink& sink);
+    /// The number of lamps of which add_drawn_lamps() draws one; 1: it draws a direction to each.
+    double number_of_draws() const;
     Division division(const Surface& surface, double share, double width) const;
     /// Unit. result: see ShadedLobe::normal.
     Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& result) const;

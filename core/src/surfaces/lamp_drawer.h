@@ -4,7 +4,9 @@
 // chance, and a narrow one hardly ever.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 #include <glm/vec2.hpp>
@@ -18,6 +20,13 @@ namespace shlight {
 
 /// The solid angle of a lamp [sr], about, as if it faced the point; 0 without extent.
 double apparent_size(const Light& lamp, const Vec3d& from);
+
+/// The part of a lamp's light, seen from a point in a direction, that counts where directions to the lamp are drawn;
+/// the rest counts where an interface's own rays meet the lamp (the balance heuristic of Veach 1997, 9.2.2). density:
+/// of these rays [1/sr], times the number of lamps if one of them is drawn.
+inline double drawn_part(const Light& lamp, const Vec3d& from, double density) {
+    return 1 / (1 + density * std::min(apparent_size(lamp, from), 4 * std::numbers::pi));
+}
 
 /// A drawn direction to a lamp.
 struct LampDraw {

@@ -101,10 +101,6 @@ bool CameraSurfaces::Interface::is_rough() const {
     return alpha > kSmooth && std::abs(ior - 1) > kNoBend;
 }
 
-double CameraSurfaces::Interface::least_lamp() const {
-    return is_rough() ? std::numbers::pi * alpha * alpha : 0.0;
-}
-
 /// A bend of the normal away from the viewer's side of the surface counts as none.
 void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
                              const Division& division, const Sink& sink) {
@@ -116,7 +112,9 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
                                            : scene_->placed().is_back(surface.hit, surface.towards_viewer)
                                                ? InterfaceReflection::drawn
                                                : InterfaceReflection::apart;
-    const Interface interface = {double{width(surface, refraction.alpha)}, ior(surface, refraction), reflection, frame,
+    const double alpha =
+        std::max(double{width(surface, refraction.alpha)}, surface.filtered ? settings_.least_width : 0.0);
+    const Interface interface = {alpha, ior(surface, refraction), reflection, frame,
                                  in_frame(view_cosine(frame.z, surface.towards_viewer))};
     const Rgb weight = surface.throughput * color(surface, refraction.weight) / static_cast<float>(division.paths);
     const double passed =
@@ -130,15 +128,13 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
                 .next(RaySource::mirror, reflected ? PathKind::glossy : PathKind::transmission, !reflected, share, way)
                 .from(scene_->materials()[surface.point.material])
                 .drawn(interface.alpha > kSmooth, division.is_broad);
-        next.least_lamp = interface.least_lamp();
-        next.chance *= chance;
         return next;
     };
     if (interface.is_rough()) {
         const ShadingFrame behind = shading_frame(surface.point.position, -frame.z, -frame.z);
-        add_narrow_lamps(surface, interface, behind, path(false, weight, {}), hash(seed, kLampSeed), sample, sink);
+        add_drawn_lamps(surface, interface, behind, path(false, weight, {}), hash(seed, kLampSeed), sample, sink);
         if (reflection == InterfaceReflection::drawn) {
-            add_narrow_lamps(surface, interface, frame, path(true, weight, {}), hash(seed, ~kLampSeed), sample, sink);
+            add_drawn_lamps(surface, interface, frame, path(true, weight, {}), hash(seed, ~kLampSeed), sample, sink);
         }
     }
     const InterfaceRay sampled =
@@ -151,24 +147,34 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Vec3d origin = sampled.reflected ? surface.point.off_surface() : surface.point.behind_surface();
     const Ray next = {Vec3f(origin), 0, Vec3f(way)};
     // No other light comes this way.
-    start(path(sampled.reflected, weight * static_cast<float>(sampled.weight), next), next);
+    Segment on = path(sampled.reflected, weight * static_cast<float>(sampled.weight), next);
+    on.chance *= chance;
+    if (interface.is_rough()) {
+        on.density = number_of_draws() *
+                     interface_value(interface.alpha, interface.ior, interface.view, sampled.way, reflection).density;
+    }
+    start(on, next);
+}
+
+double CameraSurfaces::number_of_draws() const {
+    const std::size_t lamps = scene_->lights().size();
+    return lamps > kMostLamps ? static_cast<double>(lamps) : 1.0;
 }
 
 /// Each path draws one lamp where there are many.
-void CameraSurfaces::add_narrow_lamps(const Surface& surface, const Interface& interface, const ShadingFrame& frame,
-                                      const Segment& path, std::uint32_t seed, std::uint32_t number, const Sink& sink) {
+void CameraSurfaces::add_drawn_lamps(const Surface& surface, const Interface& interface, const ShadingFrame& frame,
+                                     const Segment& path, std::uint32_t seed, std::uint32_t number, const Sink& sink) {
     const std::span<const Light> lamps = scene_->lights();
-    const bool draws = lamps.size() > kMostLamps;
+    const double share = number_of_draws();
+    const bool draws = share > 1;
     const auto drawn = static_cast<std::size_t>(sobol_beyond(number, seed).x * static_cast<double>(lamps.size()));
     const std::size_t first = draws ? std::min(drawn, lamps.size() - 1) : 0;
-    const auto share = static_cast<float>(draws ? lamps.size() : 1);
     const bool behind = glm::dot(frame.z, interface.frame.z) < 0;
     const SurfacePoint point = behind ? surface.point.turned() : surface.point;
     const Vec3d origin = point.off_surface();
     for (std::size_t i = first; i < (draws ? first + 1 : lamps.size()); ++i) {
         const LightTraits& traits = traits_of(lamps[i]);
-        if (traits.is_surface || !traits.lights_glossy || !traits.links.lights(path.light_set.value_or(0)) ||
-            apparent_size(lamps[i], origin) >= interface.least_lamp()) {
+        if (traits.is_surface || !traits.lights_glossy || !traits.links.lights(path.light_set.value_or(0))) {
             continue;
         }
         const auto lamp = drawer_.draw(lamps[i], frame, point.error,
@@ -177,9 +183,11 @@ void CameraSurfaces::add_narrow_lamps(const Surface& surface, const Interface& i
         if (glm::dot(way, point.geometric_normal) <= 0) {
             continue;
         }
-        const double value = interface_value(interface.alpha, interface.ior, interface.view,
-                                             interface.frame.to_local(way), interface.reflection);
-        Rgb light = path.throughput * lamp->light * static_cast<float>(value) * share;
+        const InterfaceValue own = interface_value(interface.alpha, interface.ior, interface.view,
+                                                   interface.frame.to_local(way), interface.reflection);
+        // Rays see no lamps without shadows.
+        const double part = traits.casts_shadows ? drawn_part(lamps[i], origin, share * own.density) : 1.0;
+        Rgb light = path.throughput * lamp->light * static_cast<float>(own.value * part * share);
         if (light != Rgb(0) && traits.casts_shadows) {
             const ShadowRaySpawner spawner(frame, origin, target_offset(lamps[i], frame), traits.links.shadow_rays);
             const Ray ray = spawner.towards(lamp->direction, lamp->distance);

@@ -115,17 +115,17 @@ VisibleLamps::VisibleLamps(std::span<const Light> lights, LampViewer viewer) {
 
 Rgb VisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface,
                            const std::optional<std::uint32_t>& light_set, std::span<Rgb> by_group,
-                           double least_size) const {
+                           double density) const {
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
     const double end = std::min<double>(ray.t_max, surface.value_or(ray.t_max));
     const View view = {Vec3d(ray.origin) + double{ray.t_min} * direction, direction, end - ray.t_min, !surface};
     Rgb sum(0);
     for (const Light* lamp : lamps_) {
         const bool shows = !light_set || traits_of(*lamp).links.lights(*light_set);
-        if (shows && std::visit([&](const auto& light) { return meets(light, view); }, *lamp) &&
-            (least_size == 0 || apparent_size(*lamp, Vec3d(ray.origin)) >= least_size)) {
+        if (shows && std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
+            const double left = std::isinf(density) ? 1.0 : 1 - drawn_part(*lamp, Vec3d(ray.origin), density);
             const Rgb radiance =
-                strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
+                strength_of(*lamp) * static_cast<float>(left * profile_factor(traits_of(*lamp).profile, -direction));
             sum += radiance;
             if (!by_group.empty()) {
                 by_group[traits_of(*lamp).group] += radiance;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,11 +25,11 @@ class VisibleLamps {
     bool empty() const { return lamps_.empty(); }
     /// The radiance that the lamps add to a ray, up to a surface at distance `surface`; without a surface up to t_max,
     /// and from suns. Lamps hide neither each other nor anything else. light_set: others do not show it; none: all do.
-    /// by_group: the radiance of each light group is added to it, unless it is empty. least_size: lamps with a smaller
-    /// apparent_size() are left out.
+    /// by_group: the radiance of each light group is added to it, unless it is empty. density: of the ray's
+    /// direction, where a part of the lamps is drawn, see drawn_part(); infinite: nothing is.
     Rgb radiance(const Ray& ray, const std::optional<double>& surface,
                  const std::optional<std::uint32_t>& light_set = std::nullopt, std::span<Rgb> by_group = {},
-                 double least_size = 0) const;
+                 double density = std::numeric_limits<double>::infinity()) const;
 
   private:
     std::vector<const Light*> lamps_;
