@@ -484,6 +484,7 @@ class Scene:
         to_world: ArrayLike | None = None,
         visible: bool = True,
         group: str | None = None,
+        background: ArrayLike | None = None,
     ) -> None: ...
     def view(
         self,

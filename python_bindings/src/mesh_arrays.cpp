@@ -410,7 +410,7 @@ glm::dmat3 rotation_from(const char* name, const py::handle& value) {
 Environment environment_from(const char* name, const py::handle& value, const glm::dmat3& to_world) {
     const AnyArray<float> array = array_from<float>(name, value);
     if (array.ndim() < 2) {
-        return Environment(color_from(name, array));
+        return Environment(color_from(name, array), name);
     }
     if (!fits(array, {kAny, kAny, 3})) {
         throw std::invalid_argument(std::string(name) + " must be a number or have shape (3,) or (height, width, 3)");
@@ -422,7 +422,7 @@ Environment environment_from(const char* name, const py::handle& value, const gl
     LatLong picture = {
         {pixels.begin(), pixels.end()}, static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), to_world};
     const GilReleased release;
-    return Environment(std::move(picture));
+    return Environment(std::move(picture), name);
 }
 
 void set_materials(MeshUse& use, const AttributeNames& names, const MaterialArguments& arguments, SceneObject& scene) {

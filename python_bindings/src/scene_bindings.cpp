@@ -118,6 +118,7 @@ radiance: [W m^-2 sr^-1], not negative: a number or RGB, the same from everywher
     go from -x over +y, +x (the middle) and -y back to -x, as in Blender.
 to_world: (3, 3), a rotation of the picture, for column vectors; None: none.
 visible: the camera sees it behind the scene, where the picture is then opaque.
+background: what the camera sees there in its place, as radiance, in the same frame; None: radiance.
 group: name of its light group, or None.
 
 Raises ValueError naming the argument.)";
@@ -292,10 +293,15 @@ void remove_lights(SceneObject& self) {
 }
 
 void set_environment(SceneObject& self, const py::object& radiance, const py::object& to_world,
-                     const py::object& visible, const py::object& group) {
+                     const py::object& visible, const py::object& group, const py::object& background) {
     const glm::dmat3 rotation = to_world.is_none() ? glm::dmat3(1) : rotation_from("to_world", to_world);
     const bool seen = flag_from("visible", visible);
-    self.scene.set_environment(environment_from("radiance", radiance, rotation), seen, group_from(self, group));
+    std::optional<Environment> shown;
+    if (!background.is_none()) {
+        shown = environment_from("background", background, rotation);
+    }
+    Environment light = environment_from("radiance", radiance, rotation);
+    self.scene.set_environment(std::move(light), seen, group_from(self, group), shown);
     self.changed();
 }
 
@@ -389,7 +395,7 @@ void bind_scene(py::module_& m) {
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
-             "to_world"_a = py::none(), "visible"_a = true, "group"_a = py::none());
+             "to_world"_a = py::none(), "visible"_a = true, "group"_a = py::none(), "background"_a = py::none());
     bind_cameras(scene);
     bind_lights(m, scene);
     bind_queries(scene);

@@ -79,6 +79,30 @@ def test_what_bounces_is_clamped_as_in_cycles(studio: Any) -> None:
     assert 9 < cycles[12, 28, :3].mean() < 10 < cycles[3, 10, :3].mean()
 
 
+def test_lamps_shine_through_clear_glass_as_cycles_filters_it(studio: Any) -> None:
+    """A ball behind clear glass, which lamps reach by bounced light alone, with Filter Glossy and Clamp Indirect as
+    files have them."""
+    glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(1, 1, 1), Roughness=0.0, IOR=1.45)
+    studio.ball(0.5, studio.material(Color=(0.8, 0.8, 0.8)), location=(0, 0, 0))
+    studio.box((2, 2, 2), glass, "Around", location=(0, 0, 0))
+    studio.lamp("POINT", 500, (2, -3, 3), shadow_soft_size=0.1)
+    studio.camera((0, -6, 0), (0, 0, 0))
+    cycles = studio.scene.cycles
+    studio.scene.shlight.max_bounces, cycles.blur_glossy, cycles.sample_clamp_indirect = 3, 1.0, 10.0
+    own, other = compare(studio, mean=0.04, error=0.01)
+    assert other[10:14, 14:18, :3].mean() > 0.1
+
+
+def test_a_wide_lamp_beside_rough_glass(studio: Any) -> None:
+    """Rays through the glass meet it seldom, and in the tail of their lobe."""
+    glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(1, 1, 1), Roughness=0.5, IOR=1.45)
+    studio.plane(4, glass, "Pane", rotation_euler=(np.pi / 2, 0, 0))
+    studio.lamp("POINT", 500, (1.5, 3, 1), shadow_soft_size=0.9)
+    studio.camera((0, -6, 0), (0, 0, 0))
+    studio.scene.shlight.max_bounces = 1
+    compare(studio, mean=5e-3, error=2e-3)
+
+
 @pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
 def test_frosted_glass_before_a_sun_and_a_point(studio: Any, distribution: str) -> None:
     glass = studio.material(

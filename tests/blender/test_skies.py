@@ -171,13 +171,31 @@ def test_no_sun(studio: Any, change: dict[str, Any]) -> None:
     assert world_read(studio).suns == []
 
 
-def as_light_of_rays(sky: Any) -> None:
-    """The camera sees red, all else blue."""
+def tell_rays_apart(sky: Any, output: str = "Is Glossy Ray") -> None:
+    """Rays of a kind see red, others the sky."""
     tree = sky.id_data
     rays, mixed = tree.nodes.new("ShaderNodeLightPath"), tree.nodes.new("ShaderNodeMixRGB")
-    mixed.inputs["Color1"].default_value, mixed.inputs["Color2"].default_value = (0, 0, 1, 1), (1, 0, 0, 1)
-    tree.links.new(rays.outputs["Is Camera Ray"], mixed.inputs["Fac"])
+    mixed.inputs["Color2"].default_value = (1, 0, 0, 1)
+    tree.links.new(rays.outputs[output], mixed.inputs["Fac"])
+    tree.links.new(sky.outputs[0], mixed.inputs["Color1"])
     tree.links.new(mixed.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+@pytest.mark.parametrize("hidden", [False, True])
+def test_a_background_for_the_camera_alone(studio: Any, hidden: bool) -> None:
+    """It sees red, or nothing, where the sky lights the scene and is seen in a mirror."""
+    studio.still_life()
+    studio.ball(0.7, studio.material("ShaderNodeBsdfAnisotropic", "Mirror", Roughness=0.0), location=(0.4, -1.6, 0.7))
+    sky = add_sky(studio, strength=0.1, sun_disc=False)
+    if hidden:
+        studio.scene.world.cycles_visibility.camera = False
+    else:
+        tell_rays_apart(sky, "Is Camera Ray")
+    studio.camera((0, -7, 1), (0, 0, 1))
+    own, cycles = studio.compare(mean=3e-3, error=1e-3)
+    np.testing.assert_allclose(own[0, 0, :3], (0, 0, 0) if hidden else (0.1, 0, 0), atol=1e-6)
+    np.testing.assert_allclose(own[0, 0], cycles[0, 0], atol=1e-6)
+    assert not studio.messages()
 
 
 def as_coordinates_of_the_camera(sky: Any) -> None:
@@ -190,7 +208,7 @@ def as_coordinates_of_the_camera(sky: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (as_light_of_rays, "'Light Path': kinds of rays are not told apart; all see what diffuse rays see"),
+        (tell_rays_apart, "'Is Glossy Ray' of Light Path: mirrors see what diffuse rays see"),
         (as_coordinates_of_the_camera, "'Window' coordinates are not supported here; (0, 0, 0) is used"),
     ],
 )

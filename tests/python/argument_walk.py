@@ -267,7 +267,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "SceneMesh.remove": (of_mesh("remove"), {}),
     "Scene.set_environment": (
         of_scene("set_environment"),
-        {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True, "group": "sky"},
+        {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True, "group": "sky", "background": RGB},
     ),
     "Scene.set_camera": (of_scene("set_camera"), {"to_world": np.eye(4), "fov_x": 1.0, **LENS}),
     "Scene.set_camera_window": (of_scene("set_camera_window"), {"to_world": np.eye(4), **WINDOW, **CLIPS, **LENS}),

@@ -84,6 +84,7 @@ REFUSED: dict[str, tuple[Any, ...]] = {
     "blend": (1.1,),
     "bottom": (1.0,),
     "bounce_rays": (1, -1, 2**15),
+    "background": ("sky", (1, 2), (1, 2, -3), np.full((2, 4, 3), NAN), np.zeros((4, 4))),
     "bsdf": (0.5, "ggx", [0.8]),
     "center": NO_PLACE,
     "centers": NO_VECTOR,

@@ -214,8 +214,8 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             continue;
         }
         radiance_[pixel] += Vec3d(p.scene.visible_lamps(LampViewer::camera).radiance(rays_[i], std::nullopt));
-        if (const Environment* background = p.scene.background()) {
-            radiance_[pixel] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
+        if (p.scene.background_visible()) {
+            radiance_[pixel] += Vec3d(p.scene.background().radiance(glm::normalize(Vec3d(rays_[i].direction))));
             ++covered_[pixel];
         }
     }

@@ -30,8 +30,10 @@ from .shaders import NODES, SHADERS, emission
 from .sky_nodes import MODELS, sky_of, sky_texture
 from .world_picture import Sun, picture, sun_of
 
-# Outputs of a Light Path node for a diffuse ray, which sees the world as it lights a surface; others are 0.
+# Outputs of a Light Path node for a diffuse ray, which sees the world as it lights a surface, and for the camera's;
+# others are 0.
 DIFFUSE_RAY = {"Is Diffuse Ray": 1.0, "Is Reflection Ray": 1.0, "Ray Depth": 1.0, "Diffuse Depth": 1.0}
+CAMERA_RAY = {"Is Camera Ray": 1.0}
 
 
 def _geometry(inputs: NodeInputs) -> Varying | Shader:
@@ -46,7 +48,6 @@ WIDEST_SUN = math.radians(5.0)  # wider ones stay in the picture
 LEFT_OUT = set(SHADERS) - {"ADD_SHADER", "EMISSION", "MIX_SHADER"}
 WORLD_NODES: dict[str, ReadNode] = {name: read for name, read in NODES.items() if name not in LEFT_OUT} | {
     "BACKGROUND": emission,
-    "LIGHT_PATH": lambda inputs: number(DIFFUSE_RAY.get(inputs.output.identifier, 0.0)),
     "NEW_GEOMETRY": _geometry,
 }
 
@@ -58,6 +59,7 @@ class World:
     radiance: NDArray[Any]  # RGB, or a lat-long picture (height, width, 3); what is negative gives no light
     to_world: NDArray[np.float64] | None = None  # a rotation of the picture
     suns: list[Sun] = field(default_factory=list)
+    background: NDArray[Any] | None = None  # what the camera sees in its place, suns and all
 
 
 def world_of_nodes(world: Any, place: str, width: int, around: Surroundings, report: ExportReport) -> World:
@@ -75,20 +77,25 @@ def world_of_nodes(world: Any, place: str, width: int, around: Surroundings, rep
         skies.append(sky_of(node))
         return sky_texture(inputs, with_sun=False)
 
-    def light(read: dict[str, ReadNode], told: ExportReport) -> VaryingEmission:
-        reader = TreeReader(world, place, told, around, WORLD_NODES | read)
+    def light(
+        read: dict[str, ReadNode], told: ExportReport, ray: dict[str, float] = DIFFUSE_RAY
+    ) -> VaryingEmission:
+        path: dict[str, ReadNode] = {"LIGHT_PATH": lambda inputs: number(ray.get(inputs.output.identifier, 0.0))}
+        reader = TreeReader(world, place, told, around, WORLD_NODES | path | read)
         return VaryingEmission(color_on_ray(reader.shader(surface).emission, Ray.LIGHT))
 
+    def shown(own: VaryingEmission) -> NDArray[Any]:
+        return picture(own, width) if own.inputs else np.clip(own.values({}, 1)[0], -BRIGHTEST, BRIGHTEST)
+
+    background = shown(light({}, ExportReport(), CAMERA_RAY)) if CAMERA_RAY.keys() & _light_paths(world) else None
     without = light({"TEX_SKY": sky_without_sun}, report)
-    if not without.inputs:
-        return World(np.clip(without.values({}, 1)[0], -BRIGHTEST, BRIGHTEST))
     suns: list[Sun] = []
     with_suns = light({}, ExportReport()) if skies else without
     for sky in skies:
         sun = sun_of(sky, with_suns, without)
         if sun is not None and not any(_overlap(sun, other) for other in suns):
             suns.append(sun)
-    return World(picture(without, width), suns=suns)
+    return World(shown(without), suns=suns, background=background)
 
 
 def _overlap(sun: Sun, other: Sun) -> bool:
@@ -100,8 +107,8 @@ MOST_NEGATIVE = 1e-3  # of a world's light, beyond which the report says that it
 
 # Kinds of images whose pixels are those of one picture.
 PLAIN_IMAGES = {"FILE", "GENERATED"}
-# Kinds of rays that Cycles can hide the world from.
-RAY_KINDS = ("camera", "diffuse", "glossy")
+# Kinds of rays that Cycles can hide the world from, beside the camera's.
+RAY_KINDS = ("diffuse", "glossy")
 
 
 class SceneWorld:
@@ -111,7 +118,7 @@ class SceneWorld:
         self._scene = scene
         self._part = part
         self._suns: list[Sun] = []
-        self._visible = True
+        self._visible = self._shows_suns = True
         self._group: str | None = None
 
     def read(self, depsgraph: Any, passes: PassWishes, report: ExportReport) -> bool:
@@ -126,20 +133,28 @@ class SceneWorld:
         around = Surroundings(depsgraph=depsgraph)
         read = World(np.zeros(3)) if world is None else _read_world(world, scene.shlight.world_width, around, report)
         self._group = None if world is None else passes.light_part(WORLD, name_of(world, "lightgroup"))
-        radiance = read.radiance
+        radiance, background = read.radiance, read.background
+        if not getattr(getattr(world, "cycles_visibility", None), "camera", True):
+            background = np.zeros(3)
         if radiance.min() < 0.0:
             radiance = np.maximum(radiance, 0.0)
             if np.sum(radiance - read.radiance) > MOST_NEGATIVE * np.sum(radiance):
                 text = "where it is negative, it takes light away in Cycles; it is black there"
                 report.add(f"World '{name_of(world)}'", text, Effect.LIGHT)
-        self._scene.set_environment(radiance, to_world=read.to_world, visible=self._visible, group=self._group)
-        self._suns = read.suns
+        self._scene.set_environment(
+            radiance,
+            to_world=read.to_world,
+            visible=self._visible,
+            group=self._group,
+            background=None if background is None else np.maximum(background, 0.0),
+        )
+        self._suns, self._shows_suns = read.suns, self._visible and background is None
         return bool(radiance.any() or read.suns)
 
     def add_suns(self) -> None:
         """Adds the discs of the world's sky to the scene's lights."""
         for sun in self._suns:
-            self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._visible, group=self._group)
+            self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._shows_suns, group=self._group)
 
 
 def _read_world(world: Any, width: int, around: Surroundings, report: ExportReport) -> World:
@@ -206,9 +221,14 @@ def _report_visibility(world: Any, place: str, report: ExportReport) -> None:
         report.add(place, text, Effect.LIGHT)
 
 
+def _light_paths(world: Any) -> set[str]:
+    """The outputs of its Light Path nodes that are linked."""
+    nodes = [node for node in all_nodes(world.node_tree) if node.type == "LIGHT_PATH"]
+    return {output.identifier for node in nodes for output in node.outputs if output.is_linked}
+
+
 def _report_rays(world: Any, place: str, report: ExportReport) -> None:
-    """Names nodes whose values one picture cannot hold."""
-    for node in all_nodes(world.node_tree):
-        if node.type == "LIGHT_PATH" and any(output.is_linked for output in node.outputs):
-            text = "kinds of rays are not told apart; all see what diffuse rays see"
-            report.add(f"{place}, node '{node_name(node)}'", text)
+    """Names outputs whose values two pictures cannot hold."""
+    if others := _light_paths(world) - CAMERA_RAY.keys():
+        text = f"{' and '.join(repr(name) for name in sorted(others))} of Light Path: mirrors see what diffuse rays see"
+        report.add(place, text)

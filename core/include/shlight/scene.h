@@ -22,6 +22,7 @@
 namespace shlight {
 
 class PlacedMeshes;
+class Scene;
 class VisibleLamps;
 
 /// Who sees lamps: a camera those with LightTraits::seen_by_camera, a mirror those that light glossy lobes, of which
@@ -48,8 +49,10 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
     std::uint32_t environment_group() const { return environment_group_; }
     /// Groups of all lights and of all surfaces that may be seen shining, ascending.
     std::span<const std::uint32_t> light_groups() const { return light_groups_; }
-    /// The environment that the camera sees; null: the background is transparent.
-    const Environment* background() const { return environment_visible_ ? &environment_ : nullptr; }
+    /// What the camera sees behind the scene, or what it would see if that were visible.
+    const Environment& background() const { return background_; }
+    /// If not, the picture is transparent there.
+    bool background_visible() const { return background_visible_; }
     const VisibleLamps& visible_lamps(LampViewer viewer) const;
     const PlacedMeshes& placed() const { return *placed_; }
     /// Scene::MeshNumber of each mesh of placed().
@@ -58,8 +61,8 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
 
   private:
     friend class Scene;
-    CompiledScene(const Vec3d& origin, std::span<const Light> lamps, Environment environment, bool environment_visible,
-                  std::uint32_t group);
+    /// settings: whose environment and background it has; lamps: its lamps.
+    CompiledScene(const Vec3d& origin, std::span<const Light> lamps, const Scene& settings);
     /// before: whose meshes and rays are shared as far as they are the same; null: nothing. Those of `meshes` are
     /// numbered in mesh_numbers_.
     void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const CompiledScene* before,
@@ -75,8 +78,8 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
     std::vector<Material> materials_;
     std::vector<Light> lights_;
     std::size_t extended_light_count_ = 0;
-    Environment environment_;
-    bool environment_visible_;
+    Environment environment_, background_;
+    bool background_visible_;
     std::uint32_t environment_group_;
     std::unique_ptr<const SceneRays> rays_;
     std::vector<VisibleLamps> visible_lamps_;  // by LampViewer
@@ -127,8 +130,9 @@ class Scene {
                              const LightTraits& traits = {});
 
     /// Takes the place of the environment before, at first a black one that the camera does not see.
-    /// visible: the camera sees it behind the scene; group: as LightTraits has.
-    void set_environment(Environment environment, bool visible = true, std::uint32_t group = 0);
+    /// visible: the camera sees it behind the scene, or `background` in its place; group: as LightTraits has.
+    void set_environment(Environment environment, bool visible = true, std::uint32_t group = 0,
+                         const std::optional<Environment>& background = std::nullopt);
     const Environment& environment() const { return environment_; }
 
     /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, about every 10 ms.
@@ -139,14 +143,15 @@ class Scene {
                                                  const CompiledScene* before = nullptr) const;
 
   private:
+    friend class CompiledScene;
     Box checked_bounds() const;
 
     std::map<MeshNumber, std::shared_ptr<const SceneMesh>> meshes_;
     MeshNumber next_mesh_ = 0;
     std::map<LampNumber, Light> lamps_;
     LampNumber next_lamp_ = 0;
-    Environment environment_;
-    bool environment_visible_ = false;
+    Environment environment_, background_;
+    bool background_visible_ = false;
     std::uint32_t environment_group_ = 0;
 };
 

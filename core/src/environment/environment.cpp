@@ -16,10 +16,10 @@ constexpr std::int64_t kMostTexels = 1 << 28;
 /// How far the elements of a rotation times its transpose may be from the identity's.
 constexpr double kRotationError = 1e-4;
 
-void check_radiance(const Rgb& radiance) {
-    check_strength("radiance", radiance);
+void check_radiance(const char* name, const Rgb& radiance) {
+    check_strength(name, radiance);
     if (glm::any(glm::lessThan(radiance, Rgb(0)))) {
-        reject("radiance must not be negative");
+        reject(std::string(name) + " must not be negative");
     }
 }
 
@@ -42,14 +42,14 @@ glm::dmat3 checked_rotation(glm::dmat3 m) {
     return m;
 }
 
-void check(LatLong& picture) {
+void check(const char* name, LatLong& picture) {
     const std::int64_t texels = std::int64_t{picture.width} * picture.height;
     if (picture.width < 1 || picture.height < 1 || texels > kMostTexels) {
-        reject("radiance must have 1 … 2^28 pixels");
+        reject(std::string(name) + " must have 1 … 2^28 pixels");
     }
-    check_size("radiance", picture.pixels.size(), static_cast<std::size_t>(texels));
+    check_size(name, picture.pixels.size(), static_cast<std::size_t>(texels));
     for (const Rgb& texel : picture.pixels) {
-        check_radiance(texel);
+        check_radiance(name, texel);
     }
     picture.to_world = checked_rotation(picture.to_world);
 }
@@ -61,12 +61,12 @@ bool is_constant(const LatLong& picture) {
 
 }  // namespace
 
-Environment::Environment(const Rgb& radiance) : constant_(radiance) {
-    check_radiance(radiance);
+Environment::Environment(const Rgb& radiance, const char* name) : constant_(radiance) {
+    check_radiance(name, radiance);
 }
 
-Environment::Environment(LatLong picture) {
-    check(picture);
+Environment::Environment(LatLong picture, const char* name) {
+    check(name, picture);
     if (is_constant(picture)) {
         constant_ = picture.pixels.front();
     } else {

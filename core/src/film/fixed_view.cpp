@@ -43,8 +43,8 @@ bool sees_alike(const CompiledScene& a, const CompiledScene& b, bool mirrors) {
                              [&](const Light& light) { return mirrors || traits_of(light).seen_by_camera; });
         return seen;
     };
-    return a.environment() == b.environment() && (a.background() == nullptr) == (b.background() == nullptr) &&
-           visible(a) == visible(b);
+    return a.environment() == b.environment() && a.background() == b.background() &&
+           a.background_visible() == b.background_visible() && visible(a) == visible(b);
 }
 
 /// The lights of some layers, as DirectLighting takes them.

@@ -138,19 +138,16 @@ PlacesBeside CameraSurfaces::places_beside(const SurfacePlace& place, const Surf
 
 void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
     const bool is_mirrored = segment.source == RaySource::mirror;
-    const Environment* background = is_mirrored ? &scene_->environment() : scene_->background();
-    const Rgb& left = segment.throughput;
-    const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
-    if (background != nullptr) {
-        add_light(segment, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
-                  sink);
-    } else if (!sink.apart.empty()) {
-        sink.apart.add(sink.in_apart(segment, segment.bounces), LightKind::environment,
-                       left * scene_->environment().radiance(direction));
+    const Environment& seen = is_mirrored ? scene_->environment() : scene_->background();
+    const Rgb light = segment.throughput * seen.radiance(glm::normalize(Vec3d(segment.whole.direction)));
+    if (is_mirrored || scene_->background_visible()) {
+        add_light(segment, LightKind::environment, scene_->environment_group(), light, sink);
+        return;
     }
-    if (!is_mirrored && background == nullptr) {
-        leave_empty(segment, left, sink);
+    if (!sink.apart.empty()) {
+        sink.apart.add(sink.in_apart(segment, segment.bounces), LightKind::environment, light);
     }
+    leave_empty(segment, segment.throughput, sink);
 }
 
 void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const Ray& part,

@@ -48,13 +48,13 @@ bool meets_rays_alike(const std::shared_ptr<const CompiledMesh>& a, const std::s
 
 }  // namespace
 
-CompiledScene::CompiledScene(const Vec3d& origin, std::span<const Light> lamps, Environment environment,
-                             bool environment_visible, std::uint32_t group)
+CompiledScene::CompiledScene(const Vec3d& origin, std::span<const Light> lamps, const Scene& settings)
     : origin_(origin),
       placed_(std::make_unique<PlacedMeshes>()),
-      environment_(std::move(environment)),
-      environment_visible_(environment_visible),
-      environment_group_(group) {
+      environment_(settings.environment_),
+      background_(settings.background_),
+      background_visible_(settings.background_visible_),
+      environment_group_(settings.environment_group_) {
     for (const Light& lamp : lamps) {
         lights_.push_back(origin == Vec3d(0) ? lamp : moved(lamp, -origin));
     }
@@ -158,7 +158,7 @@ void CompiledScene::find(std::span<const Ray> rays, std::span<const RayHit> hits
 }
 
 void CompiledScene::find_light_groups() {
-    if (!environment_.is_black()) {
+    if (!environment_.is_black() || !background_.is_black()) {
         light_groups_.push_back(environment_group_);
     }
     for (const Light& light : lights_) {
@@ -249,9 +249,11 @@ Scene::LampNumber Scene::add_sun_light(const Vec3d& direction, double angle, con
     return add_lamp(make_sun_light(direction, angle, irradiance, tangent, traits));
 }
 
-void Scene::set_environment(Environment environment, bool visible, std::uint32_t group) {
+void Scene::set_environment(Environment environment, bool visible, std::uint32_t group,
+                            const std::optional<Environment>& background) {
     environment_ = std::move(environment);
-    environment_visible_ = visible;
+    background_ = background.value_or(environment_);
+    background_visible_ = visible;
     environment_group_ = group;
 }
 
@@ -286,7 +288,7 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
     std::vector<Light> lamps;
     std::ranges::transform(lamps_, std::back_inserter(lamps), [](const auto& lamp) { return lamp.second; });
     const std::shared_ptr<CompiledScene> compiled(
-        new CompiledScene(origin, lamps, environment_, environment_visible_, environment_group_));
+        new CompiledScene(origin, lamps, *this));
     std::vector<std::shared_ptr<const SceneMesh>> meshes;
     for (const auto& [number, mesh] : meshes_) {
         if (mesh->shape->part_count() > 0 && !mesh->transforms.empty()) {
