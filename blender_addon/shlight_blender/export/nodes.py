@@ -120,6 +120,7 @@ class Surroundings:
     object_values: ObjectValues = field(default_factory=ObjectValues)
     passes: PassWishes = field(default_factory=PassWishes)
     light_bounces: bool = False
+    sharp_caustics: bool = False  # Filter Glossy leaves them sharp in Cycles
     linking: Linking = field(default_factory=lambda: Linking({}))
     part: Part = Part.WHOLE  # of the scene that is shown
     factors: Factors = field(default_factory=dict)  # of the light mixer
@@ -196,9 +197,9 @@ class NodeInputs:
 
     def remark_glass(self, what: str) -> None:
         """Reports what glass lacks in a picture of direct light, and in one with bounces."""
-        if self.reader.surroundings.light_bounces:
+        if self.reader.surroundings.light_bounces and self.reader.surroundings.sharp_caustics:
             self.remark("light that it focuses on other surfaces (caustics) is blurred", Effect.LOOK)
-        else:
+        if not self.reader.surroundings.light_bounces:
             self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
 
     def remark_nothing_reflected(self) -> None:

@@ -27,12 +27,14 @@ from .linking import Linking
 from .meshes import SceneMeshes
 from .nodes import Surroundings
 from .seen_objects import Culling, culling_of, shares_of_picture
-from .settings import report_unsupported_settings, world_of
+from .settings import render_settings, report_unsupported_settings, world_of
 from .strands import CURVES, HAIR, POINT_CLOUD, hair_systems
 from .world import SceneWorld
 
 # Called with what is being done while time passes; False: stop it.
 Waiting = Callable[[str], bool]
+# Filter Glossy from which on light through clear glass is as soft in Cycles as that of records.
+WIDE_FILTER = 0.5
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
 # Types of objects that are drawn, and the kinds of strands (strands.py) that they are. Of curves, texts, surfaces and
@@ -52,7 +54,7 @@ class _State(NamedTuple):
     """State that Blender does not list among the changes of a scene."""
 
     world: Any = None
-    materials: Any = None  # the material in place of all others, and whether light bounces
+    materials: Any = None  # the material in place of all others, whether light bounces, and by sharp glass
     moving_frame: float = 0.0  # of pictures that change with the frame
     passes: PassWishes = PassWishes()
     shown: tuple[Any, ...] = ()  # whether meshes are, what is culled, and the objects of all instances that are seen
@@ -74,7 +76,7 @@ class _State(NamedTuple):
         drawing = (*curve_settings(scene).values(), *dicing_settings(depsgraph))
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
-            (override and override.as_pointer(), bounces > 0),
+            (override and override.as_pointer(), bounces > 0, render_settings(scene)["filter_glossy"] < WIDE_FILTER),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(lamps=factors is not None),
             (view_layer.use_solid, view_layer.use_strand, culling, *drawing, *seen),
@@ -162,9 +164,9 @@ class ExportedScene:
             self._is_lit["world"] = self._world.read(depsgraph, self._state.passes, self._new_report("world"))
         if changes.materials:
             TEXTURES.begin_export()
-            bounces = self._state.materials[1]
+            _, bounces, sharply = self._state.materials
             self._surroundings = Surroundings(
-                self._view, passes=self._state.passes, light_bounces=bounces, part=self._part
+                self._view, passes=self._state.passes, light_bounces=bounces, sharp_caustics=sharply, part=self._part
             )
         self._surroundings.depsgraph, self._surroundings.linking = depsgraph, self._state.linking
         self._surroundings.factors = self._state.factors
