@@ -99,7 +99,9 @@ void CameraSurfaces::meet(const Sink& sink) {
         const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
         const double distance = glm::dot(point.position - Vec3d(segment.whole.origin), direction);
         if (segment.sees_lights()) {
-            add_lamps(viewer, segment, parts_[i], distance, sink);
+            // Directions are drawn to lamps that stand in the surface, too.
+            const double reach = std::isinf(segment.density) ? 0.0 : 2 * point.error;
+            add_lamps(viewer, segment, parts_[i], distance + reach, sink);
         }
         Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
         if (segment.source == RaySource::camera && scene_->placed().is_holdout(met_[i])) {
