@@ -123,12 +123,10 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
         static_cast<float>(std::clamp(passed * average(color(surface, refraction.weight)), kLeastChance, 1.0));
     const std::uint32_t sample = rays_[surface.ray].sample * division.paths + division.path;
     const auto path = [&](bool reflected, const Rgb& share, const Ray& way) {
-        Segment next =
-            surface
-                .next(RaySource::mirror, reflected ? PathKind::glossy : PathKind::transmission, !reflected, share, way)
-                .from(scene_->materials()[surface.point.material])
-                .drawn(interface.alpha > kSmooth, division.is_broad);
-        return next;
+        return surface
+            .next(RaySource::mirror, reflected ? PathKind::glossy : PathKind::transmission, !reflected, share, way)
+            .from(scene_->materials()[surface.point.material])
+            .drawn(interface.alpha > kSmooth, division.is_broad);
     };
     if (interface.is_rough()) {
         const ShadingFrame behind = shading_frame(surface.point.position, -frame.z, -frame.z);
