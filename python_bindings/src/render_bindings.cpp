@@ -170,8 +170,9 @@ Report report_from(const ReportState& state) {
     const auto& [order_counts, counts, floats, stage_seconds, build_seconds, dark, doubled] = state;
     const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, records, passes] = counts;
     const auto& [noise, seconds] = floats;
-    RenderReport core{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays, records,
-                      static_cast<std::uint32_t>(passes), noise, seconds, 0, stage_seconds};
+    RenderReport core{order_counts, cubature,    mirror,  over_tolerance,
+                      hits,         shadow_rays, records, static_cast<std::uint32_t>(passes),
+                      noise,        seconds,     0,       stage_seconds};
     for (const auto& [mesh, instance] : doubled) {
         core.doubled.push_back({mesh, instance});
     }

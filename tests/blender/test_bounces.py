@@ -89,7 +89,7 @@ def test_lamps_shine_through_clear_glass_as_cycles_filters_it(studio: Any) -> No
     studio.camera((0, -6, 0), (0, 0, 0))
     cycles = studio.scene.cycles
     studio.scene.shlight.max_bounces, cycles.blur_glossy, cycles.sample_clamp_indirect = 3, 1.0, 10.0
-    own, other = compare(studio, mean=0.04, error=0.01)
+    _, other = compare(studio, mean=0.04, error=0.01)
     assert other[10:14, 14:18, :3].mean() > 0.1
 
 

@@ -55,7 +55,9 @@ def test_faces_that_lie_on_others_are_named(studio: Any) -> None:
     studio.render("SHLIGHT")
     (message,) = record.last.report
     assert "lie on others" in message.text
-    assert sorted(message.places) == [f"Object '{name}'" for name in ("Plane", "Small", "Square again", "Square", "Twice")]
+    assert sorted(message.places) == [
+        f"Object '{name}'" for name in ("Plane", "Small", "Square again", "Square", "Twice")
+    ]
 
 
 @pytest.mark.parametrize("missing", ["library", "texture"])

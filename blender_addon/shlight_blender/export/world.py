@@ -24,7 +24,7 @@ from ..passes import WORLD, PassWishes
 from ..report import Effect, ExportReport
 from .emission import VaryingEmission
 from .images import BRIGHTEST, linear_pixels
-from .nodes import NodeInputs, Origin, ReadNode, Surroundings, TreeReader, all_nodes, node_name, origin
+from .nodes import NodeInputs, Origin, ReadNode, Surroundings, TreeReader, all_nodes, origin
 from .settings import world_of
 from .shaders import NODES, SHADERS, emission
 from .sky_nodes import MODELS, sky_of, sky_texture
@@ -77,9 +77,7 @@ def world_of_nodes(world: Any, place: str, width: int, around: Surroundings, rep
         skies.append(sky_of(node))
         return sky_texture(inputs, with_sun=False)
 
-    def light(
-        read: dict[str, ReadNode], told: ExportReport, ray: dict[str, float] = DIFFUSE_RAY
-    ) -> VaryingEmission:
+    def light(read: dict[str, ReadNode], told: ExportReport, ray: dict[str, float] = DIFFUSE_RAY) -> VaryingEmission:
         path: dict[str, ReadNode] = {"LIGHT_PATH": lambda inputs: number(ray.get(inputs.output.identifier, 0.0))}
         reader = TreeReader(world, place, told, around, WORLD_NODES | path | read)
         return VaryingEmission(color_on_ray(reader.shader(surface).emission, Ray.LIGHT))
@@ -154,7 +152,9 @@ class SceneWorld:
     def add_suns(self) -> None:
         """Adds the discs of the world's sky to the scene's lights."""
         for sun in self._suns:
-            self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._shows_suns, group=self._group)
+            self._scene.add_sun_light(
+                sun.direction, sun.angle, sun.irradiance, camera=self._shows_suns, group=self._group
+            )
 
 
 def _read_world(world: Any, width: int, around: Surroundings, report: ExportReport) -> World:

@@ -30,8 +30,9 @@ class Environment {
     /// The same radiance [W m⁻² sr⁻¹] from everywhere.
     /// Throws std::invalid_argument naming the argument `name` if it is negative or not finite.
     explicit Environment(const Rgb& radiance, const char* name = "radiance");
-    /// Throws std::invalid_argument naming the argument `name` if there are no pixels, not as many as the size says, more than
-    /// 2^28, or any that is negative, not finite or above 1e15, and naming `to_world` if that is not a rotation.
+    /// Throws std::invalid_argument naming the argument `name` if there are no pixels, not as many as the size says,
+    /// more than 2^28, or any that is negative, not finite or above 1e15, and naming `to_world` if that is not a
+    /// rotation.
     explicit Environment(LatLong picture, const char* name = "radiance");
 
     bool is_black() const;

@@ -44,8 +44,8 @@ struct RenderReport {
     double seconds_left = 0;  ///< that are probably left; 0 while nothing is known of them
     std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
 
-    /// Whose faces lie on others where the camera sees them: rays that begin there in float may meet these. Ascending;
-    /// empty until the picture is whole.
+    /// Instances with faces that lie on others where the camera sees them: rays that begin there in float may meet
+    /// these. Ascending; empty until the picture is whole.
     std::vector<MeshInstance> doubled{};
 
     /// Adds what is a sum over parts of the work.

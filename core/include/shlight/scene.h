@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,7 +50,7 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
     std::uint32_t environment_group() const { return environment_group_; }
     /// Groups of all lights and of all surfaces that may be seen shining, ascending.
     std::span<const std::uint32_t> light_groups() const { return light_groups_; }
-    /// What the camera sees behind the scene, or what it would see if that were visible.
+    /// The light that the camera sees behind the scene, or would see if it were visible.
     const Environment& background() const { return background_; }
     /// If not, the picture is transparent there.
     bool background_visible() const { return background_visible_; }

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "film/progressive_renderer.h"
 #include "shlight/sampling.h"
+#include "shlight/scene_rays.h"
+#include "surfaces/placed_meshes.h"
 
 namespace shlight {
 namespace {

@@ -287,8 +287,7 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
                                                                : (box.least + box.largest) / 2.0;
     std::vector<Light> lamps;
     std::ranges::transform(lamps_, std::back_inserter(lamps), [](const auto& lamp) { return lamp.second; });
-    const std::shared_ptr<CompiledScene> compiled(
-        new CompiledScene(origin, lamps, *this));
+    const std::shared_ptr<CompiledScene> compiled(new CompiledScene(origin, lamps, *this));
     std::vector<std::shared_ptr<const SceneMesh>> meshes;
     for (const auto& [number, mesh] : meshes_) {
         if (mesh->shape->part_count() > 0 && !mesh->transforms.empty()) {
