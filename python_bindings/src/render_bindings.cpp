@@ -126,13 +126,6 @@ struct Report {
     double cubature_share() const { return share(core.cubature_count); }
     double mirror_share() const { return share(core.mirror_count); }
     double over_tolerance() const { return share(core.over_tolerance); }
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> doubled() const {
-        std::vector<std::pair<std::uint64_t, std::uint32_t>> pairs;
-        for (const MeshInstance& own : core.doubled) {
-            pairs.emplace_back(own.mesh, own.instance);
-        }
-        return pairs;
-    }
     py::dict stage_seconds() const {
         py::dict seconds;
         for (std::size_t stage = 0; stage < kRenderStages.size(); ++stage) {
@@ -150,9 +143,9 @@ struct Report {
     }
 };
 
-using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 7>,
-                               std::array<double, 2>, std::array<double, kRenderStages.size()>, double, std::string,
-                               std::vector<std::pair<std::uint64_t, std::uint32_t>>>;
+using ReportState =
+    std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 7>, std::array<double, 2>,
+               std::array<double, kRenderStages.size()>, double, std::string, std::vector<MeshInstance>>;
 
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
@@ -163,20 +156,17 @@ ReportState report_state(const Report& report) {
             core.stage_seconds,
             report.build_seconds,
             report.dark,
-            report.doubled()};
+            report.core.doubled};
 }
 
 Report report_from(const ReportState& state) {
     const auto& [order_counts, counts, floats, stage_seconds, build_seconds, dark, doubled] = state;
     const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, records, passes] = counts;
     const auto& [noise, seconds] = floats;
-    RenderReport core{order_counts, cubature,    mirror,  over_tolerance,
-                      hits,         shadow_rays, records, static_cast<std::uint32_t>(passes),
-                      noise,        seconds,     0,       stage_seconds};
-    for (const auto& [mesh, instance] : doubled) {
-        core.doubled.push_back({mesh, instance});
-    }
-    return {core, build_seconds, dark};
+    return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays, records,
+             static_cast<std::uint32_t>(passes), noise, seconds, 0, stage_seconds, doubled},
+            build_seconds,
+            dark};
 }
 
 /// RenderSettings() is direct light; a picture has more.
@@ -335,11 +325,12 @@ void bind_render(py::module_& m) {
             "Time that the render will probably go on; 0 when it has ended, or when nothing is known of it yet.")
         .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
         .def_readonly("dark", &Report::dark, "Why the picture is black, as far as light is missing; else empty.")
-        .def_property_readonly("doubled", &Report::doubled,
-                               "Instances of meshes whose faces lie on others where the camera sees them, as pairs of "
-                               "SceneMesh.index and a number among its instances. shlight draws one of the faces as if "
-                               "the other were not there; renderers whose rays start on the surface in float show "
-                               "black or noise. Empty in on_update.")
+        .def_property_readonly(
+            "doubled", [](const Report& r) { return r.core.doubled; },
+            "Instances of meshes whose faces lie on others where the camera sees them, as pairs of "
+            "SceneMesh.index and a number among its instances. shlight draws one of the faces as if "
+            "the other were not there; renderers whose rays start on the surface in float show "
+            "black or noise. Empty in on_update.")
         .def_property_readonly(
             "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
         .def_property_readonly(

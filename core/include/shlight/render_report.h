@@ -4,8 +4,8 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "shlight/types.h"
@@ -19,12 +19,7 @@ inline constexpr std::array<const char*, 6> kRenderStages = {"camera rays", "vie
                                                              "shadows",     "shadow rays", "pixels"};
 
 /// An instance of a mesh: Scene::MeshNumber, and its number among the mesh's instances.
-struct MeshInstance {
-    std::uint64_t mesh;
-    std::uint32_t instance;
-
-    auto operator<=>(const MeshInstance&) const = default;
-};
+using MeshInstance = std::pair<std::uint64_t, std::uint32_t>;
 
 /// Statistics of a rendered picture.
 struct RenderReport {

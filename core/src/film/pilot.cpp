@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "film/progressive_renderer.h"
@@ -104,7 +105,7 @@ std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& st
         const Placement& own = placed.placements()[hit.instance];
         return {picture.scene->mesh_numbers()[own.mesh], own.number};
     };
-    std::vector<MeshInstance> found;
+    std::set<MeshInstance> found;
     std::vector<RayHit> near;
     int row = -1;
     for (const Pixel& pixel : spread_pixels(picture, 1, kMostDoubledPixels)) {
@@ -123,15 +124,11 @@ std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& st
         rays.near(Vec3f(point.position), static_cast<float>(2 * point.error), near);
         for (const RayHit& other : near) {
             if ((other.instance != hit.instance || other.triangle != hit.triangle) && placed.covers(other, point)) {
-                found.push_back(instance_of(hit));
-                found.push_back(instance_of(other));
+                found.insert({instance_of(hit), instance_of(other)});
             }
         }
     }
-    std::ranges::sort(found);
-    const auto rest = std::ranges::unique(found);
-    found.erase(rest.begin(), rest.end());
-    return found;
+    return {found.begin(), found.end()};
 }
 
 }  // namespace shlight
