@@ -56,8 +56,8 @@ max_bounces: surfaces that light is reflected by before the one that the camera 
 glossy_bounces, transmission_bounces: at most so many of these are by glossy lobes or mirrors, and so many through
     glass; None: as many. Light that bounces and that a diffuse surface reflects has a count of its own.
 filter_glossy: 0 ... 100, as Cycles' Filter Glossy; 0: none. Light that diffuse surfaces reflect comes to them by glossy
-    lobes that are widened, to a roughness of 0.67 by a filter of 1, and by mirrors as by such lobes: their highlights
-    on other surfaces are blurred, and without the splotches of sharp ones. What glass lets through is as it is.
+    lobes that are widened, to a roughness of 0.67 by a filter of 1, by mirrors as by such lobes, and through glass that
+    is as rough: what these throw on other surfaces is blurred, and without the splotches of sharp light.
 clamp_indirect: 0 or more, as Cycles' Clamp Indirect; 0: none. The mean of the channels that what one path brings is cut
     to, of light that has bounced: lamps that a record's rays or the camera's meet through glass or by several mirrors,
     and surfaces that they meet after a bounce. Without it, a lamp that few rays find through glass is a bright spot.

@@ -76,8 +76,8 @@ struct RenderSettings {
     /// that a diffuse surface reflects has a count of its own.
     int glossy_bounces = kMostBounces;
     int transmission_bounces = kMostBounces;
-    /// 0 … 100: light that diffuse surfaces reflect has come by glossy lobes that are widened as Cycles' Filter Glossy
-    /// does, and by mirrors as by such lobes; 0: as they are. See least_width_after_diffuse().
+    /// 0 … 100: light that diffuse surfaces reflect has come by glossy lobes and interfaces that are widened as Cycles'
+    /// Filter Glossy does, and by mirrors as by such lobes; 0: as they are. See least_width_after_diffuse().
     double filter_glossy = 0;
     /// Mean of the channels that what a path brings is cut to, of light that has bounced as Cycles' Clamp Indirect
     /// counts it; 0: nothing is cut. What a diffuse surface reflects is cut as if that were 0.8 of it.
