@@ -312,12 +312,13 @@ void PixelBatch::add_up(std::span<const Pixel> pixels, const SampleRange& sample
             Rgb cut(0);
             for (; hit < end && hits_.sample[hit] == rays_[ray].sample; ++hit) {
                 const bool bounced = hits_.path[hit] != PathKind::direct;
-                const float left = bounced ? surfaces_.settings().kept(hits_.radiance[hit]) : 1.0F;
+                const auto [is_drawn, chance] = surfaces_.hit_paths()[hit];
+                const float left = bounced ? surfaces_.settings().kept(hits_.radiance[hit] / chance) : 1.0F;
                 const Rgb own = left * hits_.radiance[hit];
                 radiance += own;
                 cut += hits_.radiance[hit] - own;
                 noise += left * left * hits_.noise[hit];
-                by_path += surfaces_.drawn_hits()[hit] != 0 ? own : Rgb(0);
+                by_path += is_drawn ? own : Rgb(0);
             }
             const float kept = std::min(pixels[pixel].most_by_path / std::max(brightness(by_path), 1e-30F), 1.0F);
             const Rgb excess = kept < 1 ? (1 - kept) * by_path : Rgb(0);

@@ -285,7 +285,7 @@ ShadingFrame CameraSurfaces::frame_of(const Surface& surface, const SurfaceLobe&
 
 void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     hits.clear();
-    drawn_hits_.clear();
+    hit_paths_.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
     std::erase_if(order_, [&](std::uint32_t i) { return !is_shaded(surfaces_[i]); });
@@ -297,7 +297,7 @@ void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     for (std::size_t end = sink.rays_per_pixel; end <= rays_.size(); end += sink.rays_per_pixel) {
         for (; next != order_.end() && surfaces_[*next].ray < end; ++next) {
             add_hit(surfaces_[*next], sink, hits);
-            drawn_hits_.resize(hits.size(), surfaces_[*next].is_drawn ? 1 : 0);
+            hit_paths_.resize(hits.size(), {surfaces_[*next].is_drawn, surfaces_[*next].chance});
         }
         hits.end_pixel();
     }

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lobes/material_lobes.h"
@@ -203,8 +204,8 @@ class CameraSurfaces {
     std::uint64_t mirror_count() const { return mirror_count_; }
     /// All surfaces; those that one camera ray has met itself are ordered by distance.
     std::span<const Surface> surfaces() const { return surfaces_; }
-    /// Segment::is_drawn of each hit.
-    std::span<const std::uint8_t> drawn_hits() const { return drawn_hits_; }
+    /// Segment::is_drawn and Segment::chance of each hit.
+    std::span<const std::pair<bool, float>> hit_paths() const { return hit_paths_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
     /// The share of light that the viewer gets of what is behind interfaces, by Fresnel's law at their smooth surface.
     Rgb refracted(const Surface& surface) const;
@@ -376,7 +377,7 @@ class CameraSurfaces {
     std::vector<PlacesBeside> beside_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
-    std::vector<std::uint8_t> drawn_hits_;
+    std::vector<std::pair<bool, float>> hit_paths_;
     std::vector<std::uint8_t> taken_;  // by lobe: whether a hit or a path has it
     std::vector<Rgb> weights_;
     std::vector<LobeForm> forms_;
