@@ -21,6 +21,8 @@ from .names import name_of
 
 VERSION: tuple[int, int, int] = bpy.app.version
 IS_BLENDER_4 = VERSION >= (4, 0, 0)
+# Whether Cycles' adaptive subdivision gives smooth meshes another shape and other normals than since then.
+DICES_OTHERWISE = VERSION < (4, 5, 0)
 
 
 class Lamps:

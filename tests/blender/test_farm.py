@@ -161,11 +161,19 @@ bpy.data.texts.new("run.py").write(code)
 bpy.data.texts["run.py"].use_module = True
 driver = scene.camera.driver_add("location", 0).driver
 driver.expression = f"__import__('os').system('touch {target}/driver') * 0"
-scene.use_nodes = True
-tree = scene.node_tree
+is_new = hasattr(scene, "compositing_node_group")  # since Blender 5.0
+if is_new:
+    scene.compositing_node_group = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")
+else:
+    scene.use_nodes = True
+tree = scene.compositing_node_group if is_new else scene.node_tree
 layers = tree.nodes.new("CompositorNodeRLayers")
 node = tree.nodes.new("CompositorNodeOutputFile")
-node.base_path = str(target)
+if is_new:
+    node.directory = str(target)
+    node.file_output_items.new("RGBA", "Image")
+else:
+    node.base_path = str(target)
 tree.links.new(layers.outputs["Image"], node.inputs[0])
 render.use_compositing = True
 render.filepath = str(target / "picture")

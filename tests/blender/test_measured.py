@@ -38,8 +38,7 @@ def paper(studio: Any, measured: Path) -> Any:
     studio.camera()
     studio.scene.camera.location, studio.scene.camera.rotation_euler = (0, 0, 4), (0, 0, 0)
     studio.resolution(16, 12)
-    studio.scene.world = bpy.data.worlds.new("World")
-    studio.scene.world.color = (1.0, 1.0, 1.0)
+    studio.plain_world((1.0, 1.0, 1.0))
     bpy.data.materials["Paper"].use_nodes = True
     return studio
 

@@ -40,7 +40,7 @@ def changed_pictures(studio: Any) -> Iterator[tuple[int, NDArray[np.float32]]]:
         (1, lambda: striped.node_tree.links.new(coordinates["Camera"], input_)),
         (1, lambda: setattr(scene.camera, "location", (4, -4, 3))),
         (0, lambda: studio.plain_world((0.1, 0.2, 0.3))),
-        (0, lambda: setattr(scene.world, "color", (0.3, 0.2, 0.1))),
+        (0, lambda: studio.plain_world((0.3, 0.2, 0.1))),
         (0, lambda: setattr(box, "hide_render", True)),
         (1, lambda: setattr(box, "hide_render", False)),
         (1, lambda: setattr(box.data.vertices[0], "co", (-2, -1, 0))),

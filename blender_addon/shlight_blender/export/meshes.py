@@ -14,7 +14,16 @@ from numpy.typing import NDArray
 import shlight
 
 from ..catchers import is_catcher
-from ..compat import Dicing, cage_of, curve_settings, dicing_of, is_preview, slot_materials, terminator_offsets
+from ..compat import (
+    DICES_OTHERWISE,
+    Dicing,
+    cage_of,
+    curve_settings,
+    dicing_of,
+    is_preview,
+    slot_materials,
+    terminator_offsets,
+)
 from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
@@ -222,6 +231,8 @@ class SceneMeshes:
             arrays, text = diced(arrays, dicing, to_world, view if dicing.in_pixels else None)
             if text:
                 report.add(place, text, Effect.SLIGHT)
+            if DICES_OTHERWISE and (dicing.curved or not moves):
+                report.add(place, "adaptive subdivision of smooth meshes is that of Blender 4.5")
         if arrays is None or not moves:
             return arrays
         displacements = [surface.displacement for surface in surfaces]

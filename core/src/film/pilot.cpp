@@ -3,14 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
-#include <utility>
 
 #include "film/progressive_renderer.h"
 #include "shlight/sampling.h"
-#include "shlight/scene_rays.h"
-#include "surfaces/placed_meshes.h"
 
 namespace shlight {
 namespace {
@@ -21,8 +16,6 @@ namespace {
 constexpr double kShareOfMean = 0.5;
 constexpr int kPilotStep = 8;
 constexpr int kMostPilotPixels = 16;
-/// Doubled faces are looked for in as many pixels of a row or column.
-constexpr int kMostDoubledPixels = 128;
 /// Pilot pixels per batch.
 constexpr std::size_t kPilotBatch = 32;
 /// Bound of the error of light that is summed up over faces ÷ the noise that is asked for. The error is smooth, and a
@@ -33,18 +26,6 @@ constexpr double kFaceShare = 1;
 double scrambled(double coordinate, std::uint32_t seed) {
     const auto bits = static_cast<std::uint32_t>(coordinate * 0x1p32);
     return (bits ^ seed) * 0x1p-32;
-}
-
-/// Pixels spread evenly over a picture. least_step: from one to the next; most: of a row or column, about.
-std::vector<Pixel> spread_pixels(const Picture& picture, int least_step, int most) {
-    std::vector<Pixel> grid;
-    const int step = std::max({least_step, picture.width / most, picture.height / most});
-    for (int row = std::min(step, picture.height) / 2; row < picture.height; row += step) {
-        for (int column = std::min(step, picture.width) / 2; column < picture.width; column += step) {
-            grid.push_back({column, row});
-        }
-    }
-    return grid;
 }
 
 Pilot pilot_of(const Picture& picture, std::uint32_t shadow_rays, const Stopped& stopped) {
@@ -75,6 +56,17 @@ double light_error(const Picture& picture, double mean) {
 
 }  // namespace
 
+std::vector<Pixel> spread_pixels(const Picture& picture, int least_step, int most) {
+    std::vector<Pixel> grid;
+    const int step = std::max({least_step, picture.width / most, picture.height / most});
+    for (int row = std::min(step, picture.height) / 2; row < picture.height; row += step) {
+        for (int column = std::min(step, picture.width) / 2; column < picture.width; column += step) {
+            grid.push_back({column, row});
+        }
+    }
+    return grid;
+}
+
 std::vector<glm::dvec2> pixel_points(const Refinement& refinement, std::uint32_t seed) {
     const std::uint32_t most = refinement.samples(refinement.most_level());
     std::vector<glm::dvec2> points = refinement.most_level() > 0 ? nested_points(most) : hammersley(most);
@@ -96,39 +88,6 @@ void look_ahead(Picture& picture, const Stopped& stopped) {
     if (picture.filtered) {
         picture.filtered->follow(picture.lighting);
     }
-}
-
-std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& stopped) {
-    const SceneRays& rays = picture.scene->rays();
-    const PlacedMeshes& placed = picture.scene->placed();
-    const auto instance_of = [&](const RayHit& hit) -> MeshInstance {
-        const Placement& own = placed.placements()[hit.instance];
-        return {picture.scene->mesh_numbers()[own.mesh], own.number};
-    };
-    std::set<MeshInstance> found;
-    std::vector<RayHit> near;
-    int row = -1;
-    for (const Pixel& pixel : spread_pixels(picture, 1, kMostDoubledPixels)) {
-        if (pixel.row != std::exchange(row, pixel.row)) {
-            end_if(stopped);
-        }
-        Ray ray = picture.ray(pixel.column + 0.5, pixel.row + 0.5, std::nullopt);
-        ray.kinds = kCameraRay;
-        RayHit hit;
-        rays.intersect({&ray, 1}, {&hit, 1});
-        if (hit.missed()) {
-            continue;
-        }
-        const SurfacePoint point = placed.surface(hit, ray.direction);
-        near.clear();
-        rays.near(Vec3f(point.position), static_cast<float>(2 * point.error), near);
-        for (const RayHit& other : near) {
-            if ((other.instance != hit.instance || other.triangle != hit.triangle) && placed.covers(other, point)) {
-                found.insert({instance_of(hit), instance_of(other)});
-            }
-        }
-    }
-    return {found.begin(), found.end()};
 }
 
 }  // namespace shlight

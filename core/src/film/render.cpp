@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/checks.h"
+#include "film/doubled_faces.h"
 #include "film/light_loan.h"
 #include "film/pilot.h"
 #include "film/pixel_batch.h"

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "film/doubled_faces.h"
+
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "film/pilot.h"
+#include "shlight/scene_rays.h"
+#include "surfaces/placed_meshes.h"
+
+namespace shlight {
+namespace {
+
+/// Pixels of a row or column that are looked at.
+constexpr int kMostPixelsOfRow = 128;
+
+}  // namespace
+
+std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& stopped) {
+    const SceneRays& rays = picture.scene->rays();
+    const PlacedMeshes& placed = picture.scene->placed();
+    const auto instance_of = [&](const RayHit& hit) -> MeshInstance {
+        const Placement& own = placed.placements()[hit.instance];
+        return {picture.scene->mesh_numbers()[own.mesh], own.number};
+    };
+    std::set<MeshInstance> found;
+    std::vector<RayHit> near;
+    int row = -1;
+    for (const Pixel& pixel : spread_pixels(picture, 1, kMostPixelsOfRow)) {
+        if (pixel.row != std::exchange(row, pixel.row)) {
+            end_if(stopped);
+        }
+        Ray ray = picture.ray(pixel.column + 0.5, pixel.row + 0.5, std::nullopt);
+        ray.kinds = kCameraRay;
+        RayHit hit;
+        rays.intersect({&ray, 1}, {&hit, 1});
+        if (hit.missed()) {
+            continue;
+        }
+        const SurfacePoint point = placed.surface(hit, ray.direction);
+        near.clear();
+        rays.near(Vec3f(point.position), static_cast<float>(2 * point.error), near);
+        for (const RayHit& other : near) {
+            if ((other.instance != hit.instance || other.triangle != hit.triangle) && placed.covers(other, point)) {
+                found.insert({instance_of(hit), instance_of(other)});
+            }
+        }
+    }
+    return {found.begin(), found.end()};
+}
+
+}  // namespace shlight
