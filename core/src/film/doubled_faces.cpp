@@ -13,7 +13,7 @@ namespace shlight {
 namespace {
 
 /// Pixels of a row or column that are looked at.
-constexpr int kMostPixelsOfRow = 128;
+constexpr int kMostPixelsOfRow = 64;
 
 }  // namespace
 
