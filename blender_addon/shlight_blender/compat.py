@@ -21,7 +21,7 @@ from .names import name_of
 
 VERSION: tuple[int, int, int] = bpy.app.version
 IS_BLENDER_4 = VERSION >= (4, 0, 0)
-# Whether Cycles' adaptive subdivision gives smooth meshes another shape and other normals than since then.
+# Whether Cycles' adaptive subdivision gives smooth meshes another shape and other normals, as before Blender 4.5.
 DICES_OTHERWISE = VERSION < (4, 5, 0)
 
 

@@ -148,7 +148,8 @@ def test_a_turned_sky(studio: Any) -> None:
     mapping.inputs["Rotation"].default_value, mapping.inputs["Scale"].default_value = (0.3, 0.2, 1.1), (1.0, 2.0, 1.0)
     tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
     tree.links.new(mapping.outputs["Vector"], sky.inputs["Vector"])
-    looks_as_in_cycles(studio, few=0.015)  # its horizon is a curve through the picture
+    # Its horizon is a curve through the picture, at which the skies of Blender 5 change more.
+    looks_as_in_cycles(studio, few=0.015 if bpy.app.version >= (5, 0, 0) else 0.01)
 
 
 def test_the_same_sun_in_two_skies_is_one(studio: Any) -> None:

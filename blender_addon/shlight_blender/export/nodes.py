@@ -197,10 +197,11 @@ class NodeInputs:
 
     def remark_glass(self, what: str) -> None:
         """Reports what glass lacks in a picture of direct light, and in one with bounces."""
-        if self.reader.surroundings.light_bounces and self.reader.surroundings.sharp_caustics:
-            self.remark("light that it focuses on other surfaces (caustics) is blurred", Effect.LOOK)
-        if not self.reader.surroundings.light_bounces:
+        around = self.reader.surroundings
+        if not around.light_bounces:
             self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
+        elif around.sharp_caustics:
+            self.remark("light that it focuses on other surfaces (caustics) is blurred", Effect.LOOK)
 
     def remark_nothing_reflected(self) -> None:
         """Reports metal in a picture of direct light."""

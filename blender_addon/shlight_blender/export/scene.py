@@ -27,7 +27,7 @@ from .linking import Linking
 from .meshes import SceneMeshes
 from .nodes import Surroundings
 from .seen_objects import Culling, culling_of, shares_of_picture
-from .settings import render_settings, report_unsupported_settings, world_of
+from .settings import filter_glossy, report_unsupported_settings, world_of
 from .strands import CURVES, HAIR, POINT_CLOUD, hair_systems
 from .world import SceneWorld
 
@@ -76,7 +76,7 @@ class _State(NamedTuple):
         drawing = (*curve_settings(scene).values(), *dicing_settings(depsgraph))
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
-            (override and override.as_pointer(), bounces > 0, render_settings(scene)["filter_glossy"] < WIDE_FILTER),
+            (override and override.as_pointer(), bounces > 0, filter_glossy(scene) < WIDE_FILTER),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(lamps=factors is not None),
             (view_layer.use_solid, view_layer.use_strand, culling, *drawing, *seen),

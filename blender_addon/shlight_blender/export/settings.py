@@ -21,6 +21,11 @@ PASSES_WRITTEN |= {f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES}
 PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
 
 
+def filter_glossy(scene: Any) -> float:
+    """Cycles' Filter Glossy."""
+    return float(getattr(getattr(scene, "cycles", None), "blur_glossy", 1.0))
+
+
 def render_settings(scene: Any) -> dict[str, Any]:
     """Arguments of `shlight.render`: `scene.shlight`, `scene.render`'s threads, and Cycles' filter and exposure."""
     settings = scene.shlight
@@ -42,7 +47,7 @@ def render_settings(scene: Any) -> dict[str, Any]:
         "max_bounces": int(settings.max_bounces),
         "glossy_bounces": int(settings.glossy_bounces),
         "transmission_bounces": int(settings.transmission_bounces),
-        "filter_glossy": float(getattr(cycles, "blur_glossy", 1.0)),
+        "filter_glossy": filter_glossy(scene),
         "clamp_indirect": float(getattr(cycles, "sample_clamp_indirect", 10.0)),
         "exposure": float(getattr(cycles, "film_exposure", 1.0)),
         "threads": int(render.threads) if render.threads_mode == "FIXED" else 0,

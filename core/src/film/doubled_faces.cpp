@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "film/doubled_faces.h"
 
+#include <cstddef>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "film/pilot.h"
 #include "shlight/scene_rays.h"
@@ -24,21 +24,22 @@ std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& st
         const Placement& own = placed.placements()[hit.instance];
         return {picture.scene->mesh_numbers()[own.mesh], own.number};
     };
+    std::vector<Ray> seen;
+    for (const Pixel& pixel : spread_pixels(picture, 1, kMostPixelsOfRow)) {
+        seen.push_back(picture.ray(pixel.column + 0.5, pixel.row + 0.5, std::nullopt));
+        seen.back().kinds = kCameraRay;
+    }
+    std::vector<RayHit> hits(seen.size());
+    rays.intersect(seen, hits);
     std::set<MeshInstance> found;
     std::vector<RayHit> near;
-    int row = -1;
-    for (const Pixel& pixel : spread_pixels(picture, 1, kMostPixelsOfRow)) {
-        if (pixel.row != std::exchange(row, pixel.row)) {
-            end_if(stopped);
-        }
-        Ray ray = picture.ray(pixel.column + 0.5, pixel.row + 0.5, std::nullopt);
-        ray.kinds = kCameraRay;
-        RayHit hit;
-        rays.intersect({&ray, 1}, {&hit, 1});
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        end_if(stopped);
+        const RayHit& hit = hits[i];
         if (hit.missed()) {
             continue;
         }
-        const SurfacePoint point = placed.surface(hit, ray.direction);
+        const SurfacePoint point = placed.surface(hit, seen[i].direction);
         near.clear();
         rays.near(Vec3f(point.position), static_cast<float>(2 * point.error), near);
         for (const RayHit& other : near) {
