@@ -242,8 +242,10 @@ TEST(EmitterLevels, OfASphereShowTheSphere) {
 }
 
 MeshLight light_of(const Solid& solid, std::size_t faces) {
-    return {std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, faces)), Rgb(1),
-            nullptr, 0, nullptr};
+    return {std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, faces)),
+            Rgb(1),
+            nullptr,
+            {}};
 }
 
 /// Near and far: a wide rectangle about the outline is drawn by solid angle, a small one by area.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "base/perpendicular.h"
@@ -189,6 +190,27 @@ TEST(FaceSampler, BringsTheSumOverAllFaces) {
 
 bool shows_front_only(const FaceTree& faces, const Vec3d& point) {
     return faces.viewpoint({point, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0).front_only;
+}
+
+TEST(FaceTree, ShowsItsInnerSideAlsoUnderOtherClosedSurfaces) {
+    Solid both = testing::icosphere(2);
+    const Solid& inner = testing::icosphere(1);
+    const auto first = static_cast<std::uint32_t>(both.vertices.size());
+    for (const Vec3d& vertex : inner.vertices) {
+        both.vertices.push_back(0.1 * vertex);
+    }
+    for (const Triangle& triangle : inner.triangles) {
+        both.triangles.push_back(triangle + first);
+    }
+    const FaceTree faces(both.vertices, both.triangles, std::vector(both.triangles.size(), Rgb(1)), true, false);
+    const auto front_only = [&](const Vec3d& origin) {
+        return faces.viewpoint({origin, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0).front_only;
+    };
+    for (const Vec3d& within : {Vec3d(0.01, 0.02, -0.5), Vec3d(0.01, 0.02, 0.5), Vec3d(0.01, 0.02, 0)}) {
+        EXPECT_FALSE(front_only(within)) << within.z;
+    }
+    EXPECT_TRUE(front_only({0.01, 0.02, -1.5}));
+    EXPECT_TRUE(front_only({0.7, 0.7, -0.5}));
 }
 
 TEST(FaceTree, ShowsItsInnerSideWithinAClosedSurfaceUnlessThatIsDark) {

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -120,3 +122,37 @@ def test_a_surface_that_bends_away_throws_no_light_on_itself(form: str) -> None:
     has_area = np.linalg.norm(normals, axis=-1) > 1e-9
     found = scene.irradiance(((a + b + c) / 3)[has_area], normals[has_area], rays=16)
     assert np.abs(found).max() <= 1e-3  # of 2π if all above shone
+
+
+def lamps(shapes: list[Any], radiance: NDArray[np.float64], **options: Any) -> NDArray[np.float32]:
+    """A floor under meshes that shine."""
+    scene = shlight.Scene()
+    for (vertices, faces), color in zip(shapes, radiance, strict=True):
+        scene.add_mesh(vertices, faces, emission=color, bsdf=shlight.Bsdf.lambert(0))
+    floor = [(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)]
+    bsdf = shlight.Bsdf.principled((0.6, 0.5, 0.7), roughness=0.4)
+    scene.add_mesh(floor, [(0, 1, 2), (0, 2, 3)], bsdf=bsdf)
+    scene.set_camera(shlight.look_at((0, -4, 1.2), (0, 0, 0.2)), 0.8)
+    return shlight.render(scene, 32, 24, max_bounces=0, **options)[8:, :, :3]
+
+
+@pytest.mark.parametrize("shape", ["squares", "balls in a dome"])
+def test_many_meshes_give_the_light_of_each(shape: str) -> None:
+    """A picture under more emitters than are looked at one by one is the sum of pictures under fewer."""
+    random, numbers = np.random.default_rng(4), np.arange(150)
+    # Squares that face down from one height do not block each other, and the balls' picture has no shadows.
+    place = np.column_stack([0.3 * (numbers // 13) - 1.7, 0.3 * (numbers % 13) - 1.8, np.full(150, 1.5)])
+    size, radiance = random.uniform(0.02, 0.1, (150, 1, 1)), random.uniform(2, 60, (150, 3))
+    square = np.array([(-1, -1, 0), (-1, 1, 0), (1, 1, 0), (1, -1, 0)]), [(0, 1, 2), (0, 2, 3)]
+    vertices, faces = square if shape == "squares" else icosphere(1)
+    shapes = [(corners, faces) for corners in place[:, None] + size * vertices]
+    if shape != "squares":
+        ball, around = icosphere(2)
+        shapes[0], radiance[0] = (8 * ball, around), (4, 2, 8)
+    options = {"shadows": shape == "squares", "noise_threshold": 0.01}
+    parts = [slice(first, first + 25) for first in range(0, 150, 25)]
+    expected = np.sum([lamps(shapes[part], radiance[part], **options) for part in parts], axis=0)
+    image = lamps(shapes, radiance, **options)
+    # The threshold bounds the error of what is summed up over faces.
+    assert rel_mse(image, expected) <= options["noise_threshold"] ** 2
+    assert abs(mean_ratio(image, expected) - 1) <= 0.3 * options["noise_threshold"]

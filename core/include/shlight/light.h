@@ -101,17 +101,26 @@ struct ParallelSource {
 struct EmitterLevels;
 class FaceTree;
 
-/// The emissive faces of a mesh with many of them.
-struct MeshLight {
-    std::shared_ptr<const EmitterLevels> shape;
-    Rgb radiance;                           ///< mean over the area
-    std::shared_ptr<const FaceTree> faces;  ///< null: its outline stands for it
-    // shines_at() finds the light's faces among those that rays meet.
-    std::uint32_t instance;  ///< RayHit::instance
+/// Finds faces that shine among those that rays meet.
+struct EmissiveMesh {
+    std::uint32_t instance = 0;  ///< RayHit::instance
     std::shared_ptr<const SceneMesh> mesh;
-    LightTraits traits = {};
-    FaceSide side = FaceSide::both;      ///< that shines; of `shape` it is the outer one
+    FaceSide side = FaceSide::both;      ///< that shines
     glm::dmat3 to_mesh = glm::dmat3(1);  ///< from the world to the mesh's frame
+
+    bool operator==(const EmissiveMesh&) const = default;
+
+    /// Whether a ray in this direction meets a side that shines of this instance.
+    bool shines_at(const RayHit& hit, const Vec3f& direction) const;
+};
+
+/// The emissive faces of a mesh with many of them, or of many meshes.
+struct MeshLight {
+    std::shared_ptr<const EmitterLevels> shape;  ///< whose outer side shines, if one does
+    Rgb radiance;                                ///< mean over the area
+    std::shared_ptr<const FaceTree> faces;       ///< null: its outline stands for it
+    std::vector<EmissiveMesh> meshes;            ///< in the order of their instances
+    LightTraits traits = {};
 
     bool operator==(const MeshLight&) const = default;
 

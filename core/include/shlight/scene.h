@@ -68,6 +68,8 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
     /// numbered in mesh_numbers_.
     void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const CompiledScene* before,
                const Stopped& stopped);
+    /// Makes one light of those of the meshes, which follow so many lamps, if there are many.
+    void join_mesh_lights(std::size_t lamps, const Stopped& stopped);
     void build_rays(const CompiledScene* before, const Stopped& stopped);
     void find_light_groups();
     void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth, std::span<Rgb> passed,

@@ -281,6 +281,26 @@ void find_extent(const IndexedMesh& mesh, EmitterLevels& emitter) {
     }
 }
 
+/// Finds all but whether it is convex, and turns the mesh outwards.
+EmitterLevels measure(IndexedMesh& mesh, const Stopped& stopped, bool one_sided) {
+    EmitterLevels emitter{{}, one_sided, false, false, false, Vec3d(0), 0, 0};
+    end_if(stopped);
+    if (mesh.faces.empty()) {
+        return emitter;
+    }
+    find_extent(mesh, emitter);
+    const bool whole = !has_border(edges_of(mesh));
+    const bool is_inverted = whole && volume(mesh) < 0;
+    emitter.turned = is_inverted && !one_sided;
+    for (Triangle& t : emitter.turned ? std::span(mesh.faces) : std::span<Triangle>()) {
+        std::swap(t.y, t.z);
+    }
+    emitter.closed = whole && is_inverted == emitter.turned;
+    emitter.area = area(mesh);
+    end_if(stopped);
+    return emitter;
+}
+
 }  // namespace
 
 double shown_share(const EmitterLevels& emitter, double distance) {
@@ -299,27 +319,18 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
     return emitter.levels.front();
 }
 
-EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                  std::size_t least_faces, const Stopped& stopped, bool one_sided) {
-    EmitterLevels emitter{{}, one_sided, false, false, false, Vec3d(0), 0, 0};
+EmitterLevels measure_emitter(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                              const Stopped& stopped, bool one_sided) {
     end_if(stopped);
     IndexedMesh mesh = welded(vertices, triangles, kWelded);
-    if (mesh.faces.empty()) {
-        return emitter;
-    }
+    return measure(mesh, stopped, one_sided);
+}
+
+EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                                  std::size_t least_faces, const Stopped& stopped, bool one_sided) {
     end_if(stopped);
-    find_extent(mesh, emitter);
-    const bool whole = !has_border(edges_of(mesh));
-    const bool is_inverted = whole && volume(mesh) < 0;
-    emitter.turned = is_inverted && !one_sided;
-    if (emitter.turned) {
-        for (Triangle& t : mesh.faces) {
-            std::swap(t.y, t.z);
-        }
-    }
-    emitter.closed = whole && is_inverted == emitter.turned;
-    emitter.area = area(mesh);
-    end_if(stopped);
+    IndexedMesh mesh = welded(vertices, triangles, kWelded);
+    EmitterLevels emitter = measure(mesh, stopped, one_sided);
     emitter.convex = emitter.closed && is_convex(mesh);
     end_if(stopped);
     if (!emitter.convex) {

@@ -84,6 +84,10 @@ double shown_share(const EmitterLevels& emitter, double distance);
 /// about the tolerance at most; the finest if none does.
 const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, double tolerance);
 
+/// A surface without its levels, of which it is not known whether it is convex. Throws as make_emitter_levels does.
+EmitterLevels measure_emitter(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                              const Stopped& stopped, bool one_sided);
+
 /// Equal vertices are joined, and triangles without area left out. The finest level has at most some 5000 faces, each
 /// one after it about a quarter of those of the one before, down to `least_faces`; all are scaled to the area of the
 /// given mesh: a closed surface shows a quarter of its area on average (Cauchy), so that no level is brighter.

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#include "lobes/lobe_rays.h"
 
 namespace shlight {
 namespace {
@@ -15,92 +18,155 @@ constexpr double kWide = 0.35;
 /// Parts' errors have a common sign in part, so that their squares alone would add up to too little.
 constexpr double kCurvature = 1;
 
-constexpr auto has_less_error = [](const auto& a, const auto& b) { return a.error < b.error; };
-
 /// The direction in which f·cos is largest, about.
 Vec3d brightest(const LobeShape& lobe, const Vec3d& view) {
     return is_glossy(lobe) ? mirrored(view) : Vec3d(0, 0, 1);
 }
 
-}  // namespace
-
-double FaceSum::most_value(const SummedLobe& lobe, const Vec3d& direction, double width, double value) const {
-    const Vec3d to_brightest = brightest(lobe.shape, view_) - direction;
-    const double share = std::min(1.0, width / std::max(glm::length(to_brightest), 1e-9));
-    const Vec3d nearest = glm::normalize(direction + share * to_brightest);
-    return std::max(value, nearest.z > 0 ? lobe_value(lobe.shape, nearest, view_) : 0.0);
+/// The area that faces show on both sides, about, if some of them look away: their cosines are taken to be spread
+/// evenly about their mean with the variance that they have, as those of zones of a sphere are (Archimedes). An
+/// estimate that was always too low would add up over the parts.
+double shown_area(const FacePart& part, const PartView& seen) {
+    const Vec3d direction = seen.nearness * seen.way;
+    const double mean = std::abs(seen.facing);
+    const double squares = part.area * glm::dot(direction, part.turns * direction);
+    const double spread = std::sqrt(3 * std::max(squares - mean * mean, 0.0));
+    return spread <= mean ? mean : 0.5 * (mean * mean / spread + spread);
 }
 
-/// A part's light follows from its power, which is exact if all its faces are seen from the same side. Errors: lobe and
-/// distance change over the part by x, which matters for the part's slope of radiance and at the horizon, and by x² for
-/// all else. If some faces look away, a part of unknown area is visible.
-FaceSum::Part FaceSum::weigh(std::uint32_t node, const PartView& seen) {
-    const FacePart& part = faces_->nodes_[node].part;
-    const Vec3d direction = frame_->to_local(seen.way) / seen.distance;
-    const double shown = front_only_ ? std::max(seen.facing, 0.0) : std::abs(seen.facing);
-    const double square = std::max(seen.distance * seen.distance, part.radius * part.radius);
-    const double area = seen.one_side ? shown : seen.unclear;
-    const bool level = !(direction.z > seen.width);
-    // Radiance may be negative; power is that of the side which the area vector shows.
-    const double side = seen.facing > 0 ? -1 : 1;
-    const Vec3d light = seen.one_side ? side / seen.distance * (seen.way * part.power) : shown * Vec3d(part.radiance);
-    Part weighed = {light / square, 0, 0, values_.size(), node};
-    for (const SummedLobe& lobe : lobes_) {
-        const double value = direction.z > 0 ? lobe_value(lobe.shape, direction, view_) : 0.0;
-        const double x = std::min(1.0, seen.width / lobe_width(lobe.shape));
-        const double change = level ? x : x * x;
-        const double unlike = seen.one_side ? change : std::max(change, std::min(1.0, part.bend));
-        const double left_out = kCurvature * unlike * part.brightness + 0.5 * x * part.slope;
-        const double most = x > kBroad || level ? most_value(lobe, direction, seen.width, value) : value;
-        values_.push_back(static_cast<float>(value));
-        weighed.value += lobe.weight * value;
-        weighed.error += lobe.weight * area / square * most * left_out;
+}  // namespace
+
+void FaceSum::Ways::resize(std::size_t count) {
+    const std::size_t padded = (count + kLobeRayLanes - 1) / kLobeRayLanes * kLobeRayLanes;
+    for (std::vector<float>* each : {&x, &y, &z, &values}) {
+        each->resize(padded);
     }
-    return weighed;
+    for (std::size_t i = count; i < padded; ++i) {
+        set(i, Vec3d(0, 0, 1));
+    }
+}
+
+void FaceSum::Ways::set(std::size_t i, const Vec3d& way) {
+    x[i] = static_cast<float>(way.x);
+    y[i] = static_cast<float>(way.y);
+    z[i] = static_cast<float>(way.z);
+}
+
+void FaceSum::Ways::weigh(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, std::size_t count) {
+    weigh_lobe_rays(shape, frame, view, {x.data(), y.data(), z.data()}, count, values.data(), nullptr);
 }
 
 void FaceSum::open(std::uint32_t node) {
+    opened_.push_back(faces_->nodes_[node].first_child);
+    opened_.push_back(faces_->nodes_[node].first_child + 1);
+}
+
+void FaceSum::look() {
+    seen_.clear();
+    for (std::size_t i = 0; i < opened_.size(); ++i) {  // it grows
+        const std::uint32_t node = opened_[i];
+        const bool is_leaf = faces_->nodes_[node].first_child == FaceTree::kLeaf;
+        const PartView seen(faces_->nodes_[node].part, *frame_, front_only_, is_leaf);
+        if (seen.hidden) {
+            continue;
+        }
+        if (seen.width > kWide && !is_leaf) {
+            open(node);
+            continue;
+        }
+        seen_.push_back(seen_part(node, seen));
+    }
+    opened_.clear();
+}
+
+/// A part's light follows from its power, which is exact if all its faces are seen from the same side.
+FaceSum::SeenPart FaceSum::seen_part(std::uint32_t node, const PartView& seen) const {
     const FacePart& part = faces_->nodes_[node].part;
-    const bool is_leaf = faces_->nodes_[node].first_child == FaceTree::kLeaf;
-    const PartView seen(part, *frame_, front_only_, is_leaf);
-    if (seen.hidden) {
-        return;
+    const double both = seen.one_side ? std::abs(seen.facing) : shown_area(part, seen);
+    const double shown = front_only_ ? 0.5 * (both + seen.facing) : both;
+    const double limit = seen.width > 1 ? 1 / (seen.width * seen.width) : 1;  // no nearer than the part's radius
+    const double scale = limit * seen.nearness * seen.nearness;
+    // Radiance may be negative; power is that of the side which the area vector shows.
+    const double side = seen.facing > 0 ? -1 : 1;
+    const Vec3d light = seen.one_side ? side * seen.nearness * (seen.way * part.power) : shown * Vec3d(part.radiance);
+    const double area = seen.one_side ? shown : seen.unclear;
+    return {seen.nearness * seen.way,  scale * light, scale * area, seen.width,
+            !(seen.rise > seen.width), seen.one_side, node};
+}
+
+void FaceSum::weigh() {
+    ways_.resize(seen_.size());
+    const std::size_t first = cut_.size();
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+        ways_.set(i, seen_[i].direction);
+        cut_.push_back({seen_[i].light, 0, 0, values_.size(), seen_[i].node});
+        values_.resize(values_.size() + lobes_.size());
     }
-    if (seen.width > kWide && !is_leaf) {
-        open(faces_->nodes_[node].first_child);
-        open(faces_->nodes_[node].first_child + 1);
-        return;
+    for (std::size_t lobe = 0; lobe < lobes_.size(); ++lobe) {
+        weigh(lobe, cut_.data() + first);
     }
-    const Part weighed = weigh(node, seen);
-    if (weighed.error > 0 || weighed.value > 0) {
-        light_ += weighed.value * weighed.light;
-        squares_ += weighed.error * weighed.error;
-        cut_.push_back(weighed);
-        std::push_heap(cut_.begin(), cut_.end(), has_less_error);
+    const auto is_dark = [](const Part& part) { return part.value == 0 && part.error == 0; };
+    cut_.erase(std::remove_if(cut_.begin() + static_cast<std::ptrdiff_t>(first), cut_.end(), is_dark), cut_.end());
+}
+
+/// Errors: lobe and distance change over the part by x, which matters for the part's slope of radiance and at the
+/// horizon, and by x² for all else.
+void FaceSum::weigh(std::size_t lobe, Part* parts) {
+    const SummedLobe& own = lobes_[lobe];
+    const double lobe_size = lobe_width(own.shape);
+    ways_.weigh(own.shape, *frame_, view_, seen_.size());
+    find_most(own);
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+        const SeenPart& seen = seen_[i];
+        const FacePart& part = faces_->nodes_[seen.node].part;
+        const double x = std::min(1.0, seen.width / lobe_size);
+        const double change = seen.level ? x : x * x;
+        const double unlike = seen.one_side ? change : std::max(change, std::min(1.0, part.bend));
+        const double left_out = kCurvature * unlike * part.brightness + 0.5 * x * part.slope;
+        values_[parts[i].first + lobe] = ways_.values[i];
+        parts[i].value += own.weight * double{ways_.values[i]};
+        parts[i].error += own.weight * seen.brought * double{most_[i]} * left_out;
     }
 }
 
-void FaceSum::refine(std::vector<NearFace>& near, double tolerance, double absolute) {
-    Vec3d near_light(0);  // about
-    while (!cut_.empty() && cut_.front().error > 0) {
-        const double allowed = std::max(tolerance * largest_channel(light_ + near_light), absolute);
-        if (squares_ <= allowed * allowed) {
-            return;
+void FaceSum::find_most(const SummedLobe& lobe) {
+    const double broad = kBroad * lobe_width(lobe.shape);
+    const Vec3d top = frame_->to_world(brightest(lobe.shape, view_));
+    most_.assign(ways_.values.begin(), ways_.values.end());
+    some_.clear();
+    for (std::uint32_t i = 0; i < seen_.size(); ++i) {
+        if (seen_[i].width > broad || seen_[i].level) {
+            some_.push_back(i);
         }
-        std::pop_heap(cut_.begin(), cut_.end(), has_less_error);
-        const Part part = cut_.back();
-        cut_.pop_back();
-        light_ -= part.value * part.light;
-        squares_ -= part.error * part.error;
+    }
+    nearest_.resize(some_.size());
+    for (std::size_t k = 0; k < some_.size(); ++k) {
+        const SeenPart& seen = seen_[some_[k]];
+        const Vec3d to_top = top - seen.direction;
+        const double length = std::max(glm::length(to_top), 1e-9);
+        nearest_.set(k, length > seen.width ? seen.direction + seen.width / length * to_top : top);
+    }
+    nearest_.weigh(lobe.shape, *frame_, view_, some_.size());
+    for (std::size_t k = 0; k < some_.size(); ++k) {
+        most_[some_[k]] = std::max(most_[some_[k]], nearest_.values[k]);
+    }
+}
+
+void FaceSum::open_worst(double allowed, Vec3d& near_light, std::vector<NearFace>& near) {
+    const double most = allowed * allowed / static_cast<double>(cut_.size());
+    std::erase_if(cut_, [&](const Part& part) {
+        if (part.error * part.error <= most) {
+            return false;
+        }
         const FaceTree::Node& node = faces_->nodes_[part.node];
         if (node.first_child == FaceTree::kLeaf) {
             near_light += part.value * part.light;
             add_near(faces_->faces_[node.face], near);
         } else {
-            open(node.first_child);
-            open(node.first_child + 1);
+            open(part.node);
         }
-    }
+        return true;
+    });
 }
 
 void FaceSum::add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const {
@@ -129,10 +195,22 @@ void FaceSum::add_up(const FaceTree& faces, const Vec3d& view, const ShadingFram
     clearance_ = glm::distance(viewpoint.start, frame.origin);
     cut_.clear();
     values_.clear();
-    light_ = Vec3d(0);
-    squares_ = 0;
-    open(0);
-    refine(near, tolerance, absolute);
+    opened_.assign(1, 0);
+    Vec3d near_light(0);  // about
+    while (!opened_.empty()) {
+        look();
+        weigh();
+        Vec3d light = near_light;
+        double squares = 0;
+        for (const Part& part : cut_) {
+            light += part.value * part.light;
+            squares += part.error * part.error;
+        }
+        const double allowed = std::max(tolerance * largest_channel(light), absolute);
+        if (squares > allowed * allowed) {
+            open_worst(allowed, near_light, near);
+        }
+    }
     for (std::size_t i = 0; i < lobes.size(); ++i) {
         lobes[i].light = Vec3d(0);
         for (const Part& part : cut_) {

@@ -28,7 +28,7 @@ struct NearFace {
     Rgb radiance;
 };
 
-/// Sums up a cut through the tree, which is refined where its error is largest (Walter et al. 2005, Lightcuts). The
+/// Sums up a cut through the tree, which is refined where its errors are largest (Walter et al. 2005, Lightcuts). The
 /// lobes of a hit share the cut. Memory is reused; one per thread.
 class FaceSum {
   public:
@@ -47,11 +47,39 @@ class FaceSum {
         std::uint32_t node;
     };
 
+    /// A part that the hit sees, before its lobes are known.
+    struct SeenPart {
+        Vec3d direction;  // in the world
+        Vec3d light;
+        double brought;  // visible area ÷ the square of the distance
+        double width;
+        bool level;  // with the horizon
+        bool one_side;
+        std::uint32_t node;
+    };
+
+    /// Directions to parts, in the world and of any length, and a lobe's f·cos for them, up to the next multiple of
+    /// kLobeRayLanes.
+    struct Ways {
+        std::vector<float> x, y, z, values;
+
+        void resize(std::size_t count);
+        void set(std::size_t i, const Vec3d& way);
+        void weigh(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, std::size_t count);
+    };
+
+    /// Finds what the hit sees of the opened nodes, and of those below them that are not too wide.
+    void look();
+    SeenPart seen_part(std::uint32_t node, const PartView& seen) const;
+    /// Adds what was seen to the cut.
+    void weigh();
+    void weigh(std::size_t lobe, Part* parts);
+    /// Finds the largest values of f·cos that the parts may meet, about: in the directions nearest to a lobe's
+    /// brightest.
+    void find_most(const SummedLobe& lobe);
+    /// Opens the parts whose errors are above the mean of those that are allowed.
+    void open_worst(double allowed, Vec3d& near_light, std::vector<NearFace>& near);
     void open(std::uint32_t node);
-    Part weigh(std::uint32_t node, const PartView& seen);
-    /// The largest value of f·cos that a part may meet, about.
-    double most_value(const SummedLobe& lobe, const Vec3d& direction, double width, double value) const;
-    void refine(std::vector<NearFace>& near, double tolerance, double absolute);
     void add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const;
 
     const FaceTree* faces_ = nullptr;
@@ -59,11 +87,15 @@ class FaceSum {
     std::span<SummedLobe> lobes_;
     Vec3d view_{0};
     bool front_only_ = false;
-    double clearance_ = 0;   // from the plane of a face, below which the hit is on it
-    std::vector<Part> cut_;  // a heap by error
+    double clearance_ = 0;  // from the plane of a face, below which the hit is on it
+    std::vector<std::uint32_t> opened_;
+    std::vector<SeenPart> seen_;
+    Ways ways_;                        // of these
+    Ways nearest_;                     // of some of these, towards a lobe's brightest direction
+    std::vector<std::uint32_t> some_;  // their numbers
+    std::vector<float> most_;          // of all
+    std::vector<Part> cut_;
     std::vector<float> values_;
-    Vec3d light_{0};      // of the cut, about
-    double squares_ = 0;  // of its errors
 };
 
 }  // namespace shlight

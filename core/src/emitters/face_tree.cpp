@@ -19,15 +19,15 @@ constexpr std::uint32_t kFacesBetweenStops = 1 << 12;
 PartView::PartView(const FacePart& part, const ShadingFrame& frame, bool front_only, bool is_face)
     : way(part.center - frame.origin),
       distance(std::max({glm::length(way), 1e-3 * part.radius, std::numeric_limits<double>::min()})),
-      width(part.radius / distance),
-      rise(glm::dot(frame.z, way) / distance),
-      facing(-glm::dot(part.area_vector, way) / distance) {
-    const double length = glm::length(part.area_vector);
+      nearness(1 / distance),
+      width(part.radius * nearness),
+      rise(glm::dot(frame.z, way) * nearness),
+      facing(-glm::dot(part.area_vector, way) * nearness) {
     const double turn = part.bend + width;
     // All points of a plane have the hit on the same side.
-    one_side = std::abs(facing) > turn * length || (is_face && width < 1);
+    one_side = std::abs(facing) > turn * part.shown || (is_face && width < 1);
     hidden = rise < -width || (front_only && facing < 0 && (one_side || is_face)) || !(part.area > 0);
-    unclear = std::min(1.0, turn) * length + part.unlike * part.area;
+    unclear = std::min(1.0, turn) * part.shown + (part.area - part.shown);
 }
 
 FaceTree::FaceTree(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
@@ -64,7 +64,9 @@ void FaceTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t last
         const Vec3d normal = 0.5 * glm::cross(f.b - f.a, f.c - f.a);
         made.part.area_vector += normal;
         made.part.power += glm::outerProduct(normal, Vec3d(f.radiance));
-        made.part.area += glm::length(normal);
+        const double area = glm::length(normal);
+        made.part.area += area;
+        made.part.turns += area > 0 ? glm::outerProduct(normal, normal / area) : glm::dmat3(0);
         radiance += glm::length(normal) * Vec3d(f.radiance);
         moment += glm::length(normal) / 3 * (f.a + f.b + f.c);
         for (const Vec3d& corner : {f.a, f.b, f.c}) {
@@ -114,7 +116,7 @@ void FaceTree::find_variation(std::uint32_t first, std::uint32_t last, FacePart&
     part.deviation = std::sqrt(squares / part.area);
     part.slope = std::max({glm::length(slopes[0]), glm::length(slopes[1]), glm::length(slopes[2])}) /
                  (part.area * std::max(part.radius, std::numeric_limits<double>::min()));
-    part.unlike = 1 - length / part.area;
+    part.shown = length;
     part.brightness = std::hypot(largest_channel(part.radiance), part.deviation);
 }
 
@@ -144,10 +146,17 @@ bool FaceTree::shows_front_only(const Vec3d& point) const {
     if (one_sided_ || !closed_ || glm::length(point - center()) >= radius()) {
         return one_sided_ || closed_;
     }
-    // Whatever is met first from within a closed surface turns its inner side to the point.
-    const Vec3d up(0, 0, 1);
-    const Face* face = face_at(point, up);
-    return face == nullptr || is_front(*face, up);
+    // A ray leaves each closed surface around the point once more than it enters it.
+    int around = 0;
+    Ray up = {Vec3f(point), 0, Vec3f(0, 0, 1)};
+    for (RayHit met;;) {
+        rays_->intersect({&up, 1}, {&met, 1});
+        if (met.missed()) {
+            return around <= 0;
+        }
+        around += is_front(faces_[leaf_of_[met.triangle]], Vec3d(up.direction)) ? -1 : 1;
+        up.t_min = std::nextafter(met.distance, std::numeric_limits<float>::infinity());
+    }
 }
 
 }  // namespace shlight

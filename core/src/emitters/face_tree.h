@@ -32,11 +32,12 @@ struct FacePart {
     double radius;
     Vec3d area_vector;  ///< sum of area · normal
     glm::dmat3 power;   ///< for each colour channel the sum of radiance · area · normal
+    glm::dmat3 turns;   ///< sum of area · normal ⊗ normal
     double area;
     Rgb radiance;       ///< the mean by area
     double deviation;   ///< root mean square of the faces' radiance about it
     double slope;       ///< the mean of (radiance - mean) · (place - center) ÷ radius, 0 … deviation
-    double unlike;      ///< 0 … 1: 1 - |area_vector| ÷ area
+    double shown;       ///< |area_vector|, the area as seen from afar, 0 … area
     double bend;        ///< no normal is farther, as a vector of length 1, from that of area_vector
     double brightness;  ///< root mean square of the faces' radiance
 };
@@ -54,6 +55,7 @@ struct PartView {
 
     Vec3d way;        ///< from the hit
     double distance;  ///< > 0
+    double nearness;  ///< 1 ÷ distance
     double width;     ///< radius ÷ distance
     double rise;      ///< sine of the elevation over the horizon
     double facing;    ///< area that it shows the hit; < 0 from behind

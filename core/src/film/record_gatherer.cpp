@@ -27,6 +27,8 @@ constexpr double kSamplesPerRoot = 2;
 /// The share of a ray's light that surfaces are taken to reflect where that is clamped. A record lights surfaces of any
 /// albedo; this is that of Blender's own material.
 constexpr float kReflectance = 0.8F;
+/// Errors of light that is summed up over faces at the ends of rays ÷ those at hits: a record has hundreds of rays.
+constexpr double kFaceErrors = 10;
 /// In place of the number of an end.
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
@@ -50,7 +52,8 @@ std::size_t wanted_samples(std::size_t rays) {
 
 RecordGatherer::Shader::Shader(const RecordGatherer& gatherer)
     : surfaces(*gatherer.scene_, gatherer.lighting_->materials, gatherer.paths_),
-      lighting(*gatherer.lighting_, gatherer.scene_->rays(), gatherer.paths_.transparent_bounces, *gatherer.parts_),
+      lighting(*gatherer.lighting_, gatherer.scene_->rays(), gatherer.paths_.transparent_bounces, *gatherer.parts_,
+               kFaceErrors),
       hits(gatherer.lighting_->lobe_stride, *gatherer.parts_) {}
 
 RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths,

@@ -81,8 +81,9 @@ std::uint32_t LightingScene::batch_size() const {
 }
 
 DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays, std::uint32_t transparent_bounces,
-                               const LightParts& parts)
+                               const LightParts& parts, double face_errors)
     : scene_(&scene),
+      face_errors_(face_errors),
       tracer_(rays, transparent_bounces),
       unshadowed_(scene.lobe_stride),
       budget_(scene.lobe_stride),
@@ -128,8 +129,8 @@ void DirectLighting::add(const LightSelection& lights, std::span<const std::uint
 }
 
 void DirectLighting::find_unshadowed(RenderReport& report) {
-    unshadowed_.compute(*points_, scene_->materials, scene_->extended, scene_->light_error, scene_->face_tolerance,
-                        report);
+    unshadowed_.compute(*points_, scene_->materials, scene_->extended, scene_->light_error,
+                        face_errors_ * scene_->face_tolerance, report);
     lights_.clear();
     for (std::size_t i = 0; i < scene_->extended.size(); ++i) {
         const LightTraits& traits = traits_of(scene_->extended[i]);

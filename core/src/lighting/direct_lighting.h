@@ -79,9 +79,9 @@ struct LightSelection {
 /// Keeps its memory from call to call; one per thread.
 class DirectLighting {
   public:
-    /// parts: which the hits keep apart.
+    /// parts: which the hits keep apart; face_errors: times LightingScene::face_tolerance is that of these hits.
     DirectLighting(const LightingScene& scene, const SceneRays& rays, std::uint32_t transparent_bounces,
-                   const LightParts& parts);
+                   const LightParts& parts, double face_errors = 1);
     // The parts refer to each other.
     DirectLighting(const DirectLighting&) = delete;
     DirectLighting& operator=(const DirectLighting&) = delete;
@@ -114,6 +114,7 @@ class DirectLighting {
     std::span<const std::uint32_t> seeds_of(std::span<const std::uint32_t> seeds, std::uint32_t kind);
 
     const LightingScene* scene_;
+    double face_errors_;
     ShadowTracer tracer_;
     ShadingPoints own_points_;
     const ShadingPoints* points_ = nullptr;  // of the last find()

@@ -190,6 +190,11 @@ SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& rad
 }
 
 bool MeshLight::shines_at(const RayHit& hit, const Vec3f& direction) const {
+    const auto own = std::ranges::equal_range(meshes, hit.instance, {}, &EmissiveMesh::instance);
+    return std::ranges::any_of(own, [&](const EmissiveMesh& part) { return part.shines_at(hit, direction); });
+}
+
+bool EmissiveMesh::shines_at(const RayHit& hit, const Vec3f& direction) const {
     const MeshShape& own = *mesh->shape;
     if (hit.instance != instance || mesh->emitted(own.material_index(hit.triangle)).part(side) == Rgb(0)) {
         return false;

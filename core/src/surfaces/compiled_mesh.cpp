@@ -4,23 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 #include <utility>
 
 #include "base/ray_rounding.h"
 #include "base/scene_range.h"
 #include "base/transforms.h"
-#include "emitters/emitter_levels.h"
-#include "emitters/face_tree.h"
-#include "shlight/mesh_light.h"
+#include "surfaces/mesh_emission.h"
 
 namespace shlight {
 namespace {
 
-/// Corners of the flat parts of an emissive mesh that are lights of their own; one with more is one light.
-constexpr std::size_t kMostCorners = 64;
-/// Faces of the coarsest level of detail: with fewer, outlines lose their shape.
-constexpr std::size_t kLeastLevelFaces = 64;
 /// Triangles whose tree is built anew when their mesh moves: this many take some ten milliseconds of a core.
 constexpr std::size_t kMostMovedTriangles = 1 << 15;
 /// Growth of rays' rounding in a mesh's own frame, which costs shadow rays more distance from the surface: a rotation
@@ -128,100 +121,6 @@ std::shared_ptr<const SurfaceTree> tree_of(const CompiledMesh& compiled, const s
                : std::make_shared<const SurfaceTree>(compiled.vertices(), triangles, std::move(numbers), stopped);
 }
 
-/// Adds the flat parts of a mesh as lights, unless they have too many corners or overlap; returns whether it has.
-bool add_flat_parts(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
-                    bool two_sided, const LightTraits& traits, std::vector<Light>& lights) {
-    std::vector<Light> parts;
-    std::size_t corners = kMostCorners;
-    std::vector<Rgb> left(radiance.begin(), radiance.end());
-    while (!left.empty()) {
-        const Rgb color = left.front();
-        std::vector<Triangle> alike;
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            if (radiance[i] == color) {
-                alike.push_back(triangles[i]);
-            }
-        }
-        auto outlines = merge_faces(vertices, alike, corners);
-        if (!outlines) {
-            return false;
-        }
-        for (FaceOutline& outline : *outlines) {
-            corners -= outline.size();
-            try {
-                parts.emplace_back(make_polygon_light(std::move(outline), color, two_sided, traits));
-            } catch (const std::invalid_argument&) {
-                return false;  // the boundary crosses itself
-            }
-        }
-        std::erase(left, color);
-    }
-    lights.insert(lights.end(), parts.begin(), parts.end());
-    return true;
-}
-
-std::vector<Triangle> turned(std::span<const Triangle> triangles) {
-    std::vector<Triangle> result(triangles.begin(), triangles.end());
-    for (Triangle& t : result) {
-        std::swap(t.y, t.z);
-    }
-    return result;
-}
-
-void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                    const std::vector<Rgb>& radiance, const Stopped& stopped, std::vector<Light>& lights) {
-    EmitterLevels levels =
-        make_emitter_levels(vertices, triangles, kLeastLevelFaces, stopped, light.side != FaceSide::both);
-    if (!(levels.area > 0)) {
-        return;
-    }
-    const bool is_even = std::ranges::all_of(radiance, [&](const Rgb& color) { return color == radiance.front(); });
-    if (!is_even || !levels.convex) {
-        const std::vector<Triangle> outwards = levels.turned ? turned(triangles) : std::vector<Triangle>();
-        light.faces = std::make_shared<const FaceTree>(vertices, levels.turned ? outwards : triangles, radiance,
-                                                       levels.closed, levels.one_sided, stopped);
-        light.radiance = light.faces->mean();
-    }
-    light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
-    lights.emplace_back(std::move(light));
-}
-
-/// Adds the faces' light of Emission::part(side).
-void add_emissive_faces(const CompiledMesh& compiled, FaceSide side, const Stopped& stopped,
-                        std::vector<Light>& lights) {
-    const SceneMesh& mesh = *compiled.mesh;
-    std::vector<Triangle> emissive;
-    std::vector<Rgb> radiance;  // of each of them
-    for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
-        const Rgb emitted = mesh.emitted(mesh.shape->material_index(i)).part(side);
-        if (emitted != Rgb(0)) {
-            emissive.push_back(mesh.shape->triangles[i]);
-            radiance.push_back(emitted);
-        }
-    }
-    LightTraits traits;
-    traits.group = mesh.group;
-    traits.lights_diffuse = (mesh.seen_by & kDiffuseRay) != 0;
-    traits.lights_glossy = (mesh.seen_by & kGlossyRay) != 0;
-    traits.is_surface = true;
-    traits.links = mesh.links;
-    traits.links.shadow_rays |= mesh.seen_by & kShadowRay;  // they find the light's own faces
-    const bool two_sided = side == FaceSide::both;
-    for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {
-        std::vector<Vec3d> vertices;
-        for (const Vec3f& v : compiled.vertices()) {
-            vertices.push_back(compiled.is_baked() ? Vec3d(v) : transform_point(mesh.transforms[k], Vec3d(v)));
-        }
-        const glm::dmat3 linear(mesh.transforms[k]);
-        const bool runs_clockwise = (side == FaceSide::back) != (glm::determinant(linear) < 0);
-        const std::vector<Triangle> faces = runs_clockwise && !two_sided ? turned(emissive) : emissive;
-        if (!add_flat_parts(vertices, faces, radiance, two_sided, traits, lights)) {
-            add_mesh_light({nullptr, radiance.front(), nullptr, k, compiled.mesh, traits, side, glm::inverse(linear)},
-                           vertices, faces, radiance, stopped, lights);
-        }
-    }
-}
-
 }  // namespace
 
 std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& given, const Vec3d& origin,
@@ -255,8 +154,8 @@ std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const Sce
         compiled->opaque = tree_of(*compiled, transparent, false, stopped);
         compiled->transparent = tree_of(*compiled, transparent, true, stopped);
     }
-    for (const FaceSide side : {FaceSide::both, FaceSide::front, FaceSide::back}) {
-        add_emissive_faces(*compiled, side, stopped, compiled->lights);
+    for (const EmissiveFaces& faces : emissive_faces(*compiled, 0)) {
+        add_lights(faces, stopped, compiled->lights);
     }
     return compiled;
 }

@@ -22,7 +22,7 @@ struct CompiledMesh {
     std::shared_ptr<const std::vector<Vec3f>> world_vertices;  ///< null: rays meet the mesh in its own frame
     double radius_scale = 1;                                   ///< of curves and spheres there
     std::shared_ptr<const SurfaceTree> opaque, transparent;    ///< null: there are no such surfaces
-    std::vector<Light> lights;  ///< MeshLight::instance counts the instances of this mesh
+    std::vector<Light> lights;  ///< EmissiveMesh::instance counts the instances of this mesh
 
     bool is_baked() const { return world_vertices != nullptr; }
     /// In the frame in which rays meet the mesh.

@@ -14,6 +14,7 @@
 
 #include "base/scene_range.h"
 #include "shlight/parallel.h"
+#include "surfaces/mesh_emission.h"
 #include "surfaces/placed_meshes.h"
 #include "surfaces/visible_lamps.h"
 
@@ -31,6 +32,9 @@ struct LampBounds {
         return {light.center - light.radius, light.center + light.radius};
     }
 };
+
+/// Lights of meshes in a scene, at most, that are looked at one by one.
+constexpr std::size_t kMostMeshLights = 128;
 
 /// A scene keeps the world's frame, or the one before, if it is no more of its own sizes away from its origin.
 constexpr double kSizesAway = 8;
@@ -69,6 +73,7 @@ const VisibleLamps& CompiledScene::visible_lamps(LampViewer viewer) const {
 
 void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const CompiledScene* before,
                           const Stopped& stopped) {
+    const std::size_t lamps = lights_.size();
     environment_ = environment_.prepared(before == nullptr ? Environment() : before->environment_, stopped);
     std::unordered_map<const MeshShape*, std::shared_ptr<const CompiledMesh>> of_shape;
     for (std::size_t i = 0; before != nullptr && i < before->placed_->meshes().size(); ++i) {
@@ -82,11 +87,11 @@ void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> mesh
     });
     for (std::shared_ptr<const CompiledMesh>& mesh : compiled) {
         const auto first_instance = static_cast<std::uint32_t>(placed_->placements().size());
-        for (const Light& light : mesh->lights) {
-            lights_.push_back(light);
-            if (auto* mesh_light = std::get_if<MeshLight>(&lights_.back())) {
-                mesh_light->instance += first_instance;
+        for (Light light : mesh->lights) {
+            if (auto* mesh_light = std::get_if<MeshLight>(&light)) {
+                mesh_light->meshes.front().instance += first_instance;
             }
+            lights_.push_back(std::move(light));
         }
         const auto first_material = static_cast<std::uint32_t>(materials_.size());
         for (std::size_t i = 0; i < mesh->mesh->material_count(); ++i) {
@@ -94,6 +99,7 @@ void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> mesh
         }
         placed_->add(std::move(mesh), first_material);
     }
+    join_mesh_lights(lamps, stopped);
     const auto first_delta =
         std::stable_partition(lights_.begin(), lights_.end(), [](const Light& light) { return !is_delta(light); });
     extended_light_count_ = static_cast<std::size_t>(first_delta - lights_.begin());
@@ -102,6 +108,20 @@ void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> mesh
         visible_lamps_.emplace_back(lights_, viewer);
     }
     find_light_groups();
+}
+
+void CompiledScene::join_mesh_lights(std::size_t lamps, const Stopped& stopped) {
+    if (lights_.size() - lamps <= kMostMeshLights) {
+        return;
+    }
+    std::vector<EmissiveFaces> faces;
+    std::uint32_t first_instance = 0;
+    for (const std::shared_ptr<const CompiledMesh>& mesh : placed_->meshes()) {
+        std::ranges::move(emissive_faces(*mesh, first_instance), std::back_inserter(faces));
+        first_instance += static_cast<std::uint32_t>(mesh->mesh->transforms.size());
+    }
+    lights_.erase(lights_.begin() + static_cast<std::ptrdiff_t>(lamps), lights_.end());
+    std::ranges::move(joined_lights(faces, stopped), std::back_inserter(lights_));
 }
 
 void CompiledScene::build_rays(const CompiledScene* before, const Stopped& stopped) {

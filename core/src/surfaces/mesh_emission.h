@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// The emissive faces of meshes as lights. Those of a scene with many of them are lights together.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "shlight/light.h"
+#include "shlight/parallel.h"
+#include "surfaces/compiled_mesh.h"
+
+namespace shlight {
+
+/// The faces of an instance of a mesh that shine to one side, or to both, in the scene's frame.
+struct EmissiveFaces {
+    std::vector<Vec3d> vertices;
+    std::vector<Triangle> triangles;  ///< that show the side from which they run counter-clockwise, if it is one
+    std::vector<Rgb> radiance;        ///< one for each of them
+    EmissiveMesh mesh;
+    LightTraits traits;
+};
+
+/// Of all instances of a mesh, which EmissiveMesh::instance counts from `first`.
+std::vector<EmissiveFaces> emissive_faces(const CompiledMesh& compiled, std::uint32_t first);
+
+/// Adds the flat parts of the faces as lights, or all as one, if they have too many corners. Throws RenderCancelled
+/// once stopped.
+void add_lights(const EmissiveFaces& faces, const Stopped& stopped, std::vector<Light>& lights);
+
+/// The lights of all these, of which those with the same traits are one: its faces are found by a tree, while each of
+/// many lights is looked at from every hit. Throws RenderCancelled once stopped.
+std::vector<Light> joined_lights(std::span<const EmissiveFaces> faces, const Stopped& stopped);
+
+}  // namespace shlight
