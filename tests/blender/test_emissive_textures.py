@@ -238,3 +238,19 @@ def test_the_camera_sees_the_picture(studio: Any) -> None:
     image, reference = studio.compare(mean=5e-3, error=2e-2)
     for flipped in (reference[::-1], reference[:, ::-1]):
         assert np.square(image - flipped).mean() > 4 * np.square(image - reference).mean()
+
+
+def test_instances_shine_as_their_places_have_it(studio: Any) -> None:
+    material = studio.material("ShaderNodeEmission", name="Glow", Strength=8.0)
+    tree = material.node_tree
+    own = tree.nodes.new("ShaderNodeObjectInfo")
+    tree.links.new(own.outputs["Location"], tree.nodes["Emission"].inputs["Color"])
+    corners = [(-0.3, -0.3, 0), (-0.3, 0.3, 0), (0.3, 0.3, 0), (0.3, -0.3, 0)]
+    first = studio.mesh("Glow", corners, [(0, 1, 2, 3)], material)
+    first.location = (1.0, 0.1, 0.8)
+    for place in ((0.2, 0.6, 0.8), (0.1, 1.4, 0.3)):
+        other = first.copy()
+        other.location = place
+        studio.scene.collection.objects.link(other)
+    studio.floors()
+    studio.compare(mean=5e-3, error=2e-3)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -36,15 +37,12 @@ from .mesh_arrays import MeshArrays, complete, flattened, object_arrays
 from .mesh_attributes import UV
 from .nodes import Surroundings
 from .strands import CURVES, HAIR, strands_of
-from .textured_meshes import with_even_emission
+from .textured_meshes import shines_by_place, with_even_emission
 
 Matrix = NDArray[np.float64]
 
-# Number of emissive triangles of one material in one place above which they are one light in the core.
-MOST_SINGLE_FACES = 16
-# Number of lights from which the report explains why the render takes long.
-MANY_EMITTERS = 200
-
+# Instances of a mesh, at most, of which each shines as its own place and object have it.
+MOST_SHINING_PLACES = 256
 
 # Kinds of rays by the flags of objects that show them to these.
 RAY_KINDS = {
@@ -120,11 +118,6 @@ class KeptMesh:
         """True if something of it gives light."""
         return any(bool(own.emission.any()) for own, faces in zip(self.surfaces, self.faces, strict=True) if faces)
 
-    def light_count(self) -> int:
-        """How many lights it is to the core."""
-        faces = [n for own, n in zip(self.surfaces, self.faces, strict=True) if own.emission.any()]
-        return len(self.transforms) * sum(1 if n > MOST_SINGLE_FACES else int(n) for n in faces)
-
 
 class SceneMeshes:
     """Keeps the meshes of a scene like those of a depsgraph: `begin`, `add` for each instance, then `finish`."""
@@ -142,6 +135,7 @@ class SceneMeshes:
         self._surroundings = surroundings
         self._override = material_override
         self._seen: dict[tuple[Any, ...], KeptMesh] = {}
+        self._shining_places: Counter[tuple[Any, ...]] = Counter()
         self._told: set[Any] = set()  # the materials whose report this one has
         self.report = ExportReport()
         if changes.materials:
@@ -164,9 +158,11 @@ class SceneMeshes:
         if flat and kind:
             self.report.add(_place_of(mesh_object), "it has no extent in a direction; left out", Effect.THING)
             return
+        surfaces = [self._surface(material) for material in materials or [None]]
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
-        surfaces = [self._surface(material) for material in materials or [None]]
+        elif any(shines_by_place(surface) for surface in surfaces):
+            key = (*key, self._shining_place(key, mesh_object))
         if key not in self._seen:
             kept = self._kept_mesh(key, instance, to_world, surfaces)
             self._seen[key] = kept or (
@@ -179,6 +175,14 @@ class SceneMeshes:
         use.object_values.append(self._surroundings.object_values.of(instance))
         use.labels.append(_label(mesh_object))
 
+    def _shining_place(self, key: tuple[Any, ...], shown: Any) -> int:
+        """The number of the mesh, among those of this key, that the next instance is an instance of."""
+        self._shining_places[key] += 1
+        if self._shining_places[key] > MOST_SHINING_PLACES:
+            text = f"only {MOST_SHINING_PLACES} of its instances shine as their place has it; the others as the last"
+            self.report.add(_place_of(shown), text, Effect.LIGHT)
+        return min(self._shining_places[key], MOST_SHINING_PLACES)
+
     def _kept_mesh(
         self, key: tuple[Any, ...], instance: Any, to_world: Matrix, surfaces: list[Surface]
     ) -> KeptMesh | None:
@@ -189,12 +193,13 @@ class SceneMeshes:
         shapes = self._changes.shapes
         if name_of(instance.object, "name_full") in shapes or (kept.owner in shapes if kept.owner else bool(shapes)):
             return None
-        first_place = kept.transforms[0]
+        first_place, first_values = kept.transforms[0], kept.object_values[0]
         kept.transforms, kept.object_values, kept.labels = [], [], []
         if not self._changes.materials:
             # Displacement is that of one time of the picture, as in Cycles.
             stays = not kept.is_of_place or (self._changes.motion and not _is_cut(surfaces))
-            return kept if stays or np.array_equal(first_place, to_world) else None
+            is_same = first_values == self._surroundings.object_values.of(instance)
+            return kept if stays or (is_same and np.array_equal(first_place, to_world)) else None
         if kept.is_of_place or (not kept.is_of_strands and (_is_cut(surfaces) or _is_displaced(surfaces))):
             return None
         if not self._attributes(surfaces) <= kept.attributes:
@@ -365,9 +370,6 @@ class SceneMeshes:
             ask()
             self.report.extend(use.report)
             emits |= use.emits()
-            if (lights := use.light_count()) >= MANY_EMITTERS:
-                text = f"its emissive faces are up to {lights} lights, which take long to render"
-                self.report.add(use.place, text, Effect.SLIGHT)
             _place(use)
         return emits
 

@@ -213,6 +213,12 @@ FloatArray = NDArray[np.float32]
 Remark = Callable[[str], None]
 
 
+def shines_by_place(surface: Surface) -> bool:
+    """Whether instances of a mesh with this surface may shine differently."""
+    inputs = [] if surface.varying is None else surface.varying.inputs
+    return any(source not in ("attribute", "barycentric", "backfacing") for source, _, _ in inputs)
+
+
 def with_even_emission(
     arrays: MeshArrays, surfaces: list[Surface], to_world: Array, object_values: Sequence[float], remark: Remark
 ) -> tuple[MeshArrays, list[Surface]]:
