@@ -63,8 +63,9 @@ void FaceSum::open(std::uint32_t node) {
 
 void FaceSum::look() {
     seen_.clear();
-    for (std::size_t i = 0; i < opened_.size(); ++i) {  // it grows
-        const std::uint32_t node = opened_[i];
+    while (!opened_.empty()) {
+        const std::uint32_t node = opened_.back();
+        opened_.pop_back();
         const bool is_leaf = faces_->nodes_[node].first_child == FaceTree::kLeaf;
         const PartView seen(faces_->nodes_[node].part, *frame_, front_only_, is_leaf);
         if (seen.hidden) {
@@ -76,7 +77,6 @@ void FaceSum::look() {
         }
         seen_.push_back(seen_part(node, seen));
     }
-    opened_.clear();
 }
 
 /// A part's light follows from its power, which is exact if all its faces are seen from the same side.

@@ -190,8 +190,11 @@ SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& rad
 }
 
 bool MeshLight::shines_at(const RayHit& hit, const Vec3f& direction) const {
-    const auto own = std::ranges::equal_range(meshes, hit.instance, {}, &EmissiveMesh::instance);
-    return std::ranges::any_of(own, [&](const EmissiveMesh& part) { return part.shines_at(hit, direction); });
+    auto own = std::ranges::lower_bound(meshes, hit.instance, {}, &EmissiveMesh::instance);
+    while (own != meshes.end() && own->instance == hit.instance && !own->shines_at(hit, direction)) {
+        ++own;
+    }
+    return own != meshes.end() && own->instance == hit.instance;
 }
 
 bool EmissiveMesh::shines_at(const RayHit& hit, const Vec3f& direction) const {
