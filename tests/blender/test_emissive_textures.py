@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from shlight import nodes
+from shlight_blender.export import meshes
 from shlight_blender.export.emission import VaryingEmission
 from shlight_blender.export.materials import read_material
 from shlight_blender.export.nodes import Surroundings
@@ -240,7 +241,7 @@ def test_the_camera_sees_the_picture(studio: Any) -> None:
         assert np.square(image - flipped).mean() > 4 * np.square(image - reference).mean()
 
 
-def test_instances_shine_as_their_places_have_it(studio: Any) -> None:
+def test_instances_shine_as_their_places_have_it(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     material = studio.material("ShaderNodeEmission", name="Glow", Strength=8.0)
     tree = material.node_tree
     own = tree.nodes.new("ShaderNodeObjectInfo")
@@ -254,3 +255,7 @@ def test_instances_shine_as_their_places_have_it(studio: Any) -> None:
         studio.scene.collection.objects.link(other)
     studio.floors()
     studio.compare(mean=5e-3, error=2e-3)
+    assert not studio.messages()
+    monkeypatch.setattr(meshes, "MOST_SHINING_PLACES", 2)
+    (line,) = studio.messages()
+    assert "only 2 of its instances shine" in line
