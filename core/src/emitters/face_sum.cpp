@@ -17,6 +17,8 @@ constexpr double kWide = 0.35;
 /// Relative error of a part as a whole ÷ (its radius as a share of the least distance over which the light changes)².
 /// Parts' errors have a common sign in part, so that their squares alone would add up to too little.
 constexpr double kCurvature = 1;
+/// Error of shown_area() ÷ area: a cube has the largest, as its faces look straight to and away from the hit.
+constexpr double kTurned = 0.17;
 
 /// The direction in which f·cos is largest, about.
 Vec3d brightest(const LobeShape& lobe, const Vec3d& view) {
@@ -121,8 +123,9 @@ void FaceSum::weigh(std::size_t lobe, Part* parts) {
         const FacePart& part = faces_->nodes_[seen.node].part;
         const double x = std::min(1.0, seen.width / lobe_size);
         const double change = seen.level ? x : x * x;
-        const double unlike = seen.one_side ? change : std::max(change, std::min(1.0, part.bend));
-        const double left_out = kCurvature * unlike * part.brightness + 0.5 * x * part.slope;
+        const double turned = std::hypot(kTurned * largest_channel(part.radiance), part.deviation);
+        const double unlike = seen.one_side ? 0 : std::min(1.0, part.bend) * turned;
+        const double left_out = kCurvature * std::max(change * part.brightness, unlike) + 0.5 * x * part.slope;
         values_[parts[i].first + lobe] = ways_.values[i];
         parts[i].value += own.weight * double{ways_.values[i]};
         parts[i].error += own.weight * seen.brought * double{most_[i]} * left_out;

@@ -154,9 +154,8 @@ std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const Sce
         compiled->opaque = tree_of(*compiled, transparent, false, stopped);
         compiled->transparent = tree_of(*compiled, transparent, true, stopped);
     }
-    for (const EmissiveFaces& faces : emissive_faces(*compiled, 0)) {
-        add_lights(faces, stopped, compiled->lights);
-    }
+    visit_emissive_faces(*compiled, 0,
+                         [&](const EmissiveFaces& faces) { add_lights(faces, stopped, compiled->lights); });
     return compiled;
 }
 

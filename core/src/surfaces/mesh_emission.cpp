@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -72,6 +73,38 @@ std::vector<Light> flat_parts(const EmissiveFaces& faces) {
     return parts;
 }
 
+/// The faces of a mesh that shine to a side, with the vertices that they use, in the frame in which rays meet them.
+struct SidePart {
+    SidePart(const CompiledMesh& compiled, FaceSide side) {
+        const SceneMesh& mesh = *compiled.mesh;
+        std::vector<std::uint32_t> number(compiled.vertices().size(), kUnused);
+        for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
+            const Rgb emitted = mesh.emitted(mesh.shape->material_index(i)).part(side);
+            if (emitted == Rgb(0)) {
+                continue;
+            }
+            Triangle triangle = mesh.shape->triangles[i];
+            for (int corner = 0; corner < 3; ++corner) {
+                std::uint32_t& own = number[triangle[corner]];
+                if (own == kUnused) {
+                    own = static_cast<std::uint32_t>(vertices.size());
+                    vertices.emplace_back(compiled.vertices()[triangle[corner]]);
+                }
+                triangle[corner] = own;
+            }
+            triangles.push_back(triangle);
+            radiance.push_back(emitted);
+        }
+    }
+
+    static constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<Vec3d> vertices;
+    std::vector<Triangle> triangles;
+    std::vector<Rgb> radiance;
+};
+
+/// Faces of joined lights, at most, of some 600 bytes each: those of further meshes stay apart.
+constexpr std::size_t kMostJoinedFaces = 1 << 19;
 /// Radius of a closed surface ÷ that of all emissive faces, above which it is a light of its own: from within it, the
 /// far sides of others would count as its inner side does.
 constexpr double kSurrounding = 0.5;
@@ -80,11 +113,9 @@ double radius_of(std::span<const EmissiveFaces> faces) {
     Vec3d low = faces.front().vertices.front();
     Vec3d high = low;
     for (const EmissiveFaces& own : faces) {
-        for (const Triangle& t : own.triangles) {
-            for (int corner = 0; corner < 3; ++corner) {
-                low = glm::min(low, own.vertices[t[corner]]);
-                high = glm::max(high, own.vertices[t[corner]]);
-            }
+        for (const Vec3d& vertex : own.vertices) {
+            low = glm::min(low, vertex);
+            high = glm::max(high, vertex);
         }
     }
     return 0.5 * glm::length(high - low);
@@ -125,34 +156,25 @@ struct JoinedFaces {
 
 }  // namespace
 
-std::vector<EmissiveFaces> emissive_faces(const CompiledMesh& compiled, std::uint32_t first) {
+void visit_emissive_faces(const CompiledMesh& compiled, std::uint32_t first,
+                          const std::function<void(EmissiveFaces&&)>& visit) {
     const SceneMesh& mesh = *compiled.mesh;
-    std::vector<EmissiveFaces> all;
     for (const FaceSide side : {FaceSide::both, FaceSide::front, FaceSide::back}) {
-        std::vector<Triangle> emissive;
-        std::vector<Rgb> radiance;
-        for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
-            const Rgb emitted = mesh.emitted(mesh.shape->material_index(i)).part(side);
-            if (emitted != Rgb(0)) {
-                emissive.push_back(mesh.shape->triangles[i]);
-                radiance.push_back(emitted);
-            }
-        }
-        for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {
+        const SidePart part(compiled, side);
+        for (std::uint32_t k = 0; k < mesh.transforms.size() && !part.triangles.empty(); ++k) {
             std::vector<Vec3d> vertices;
-            for (const Vec3f& v : compiled.vertices()) {
-                vertices.push_back(compiled.is_baked() ? Vec3d(v) : transform_point(mesh.transforms[k], Vec3d(v)));
+            for (const Vec3d& v : part.vertices) {
+                vertices.push_back(compiled.is_baked() ? v : transform_point(mesh.transforms[k], v));
             }
             const glm::dmat3 linear(mesh.transforms[k]);
             const bool runs_clockwise = (side == FaceSide::back) != (glm::determinant(linear) < 0);
-            all.push_back({std::move(vertices),
-                           runs_clockwise && side != FaceSide::both ? turned(emissive) : emissive,
-                           radiance,
-                           {first + k, compiled.mesh, side, glm::inverse(linear)},
-                           traits_of(mesh)});
+            visit({std::move(vertices),
+                   runs_clockwise && side != FaceSide::both ? turned(part.triangles) : part.triangles,
+                   part.radiance,
+                   {first + k, compiled.mesh, side, glm::inverse(linear)},
+                   traits_of(mesh)});
         }
     }
-    return all;
 }
 
 void add_lights(const EmissiveFaces& faces, const Stopped& stopped, std::vector<Light>& lights) {
@@ -181,15 +203,18 @@ std::vector<Light> joined_lights(std::span<const EmissiveFaces> faces, const Sto
     std::vector<JoinedFaces> joined;
     std::vector<Light> lights;
     const double most = kSurrounding * radius_of(faces);
+    std::size_t count = 0;
     for (const EmissiveFaces& own : faces) {
         const EmitterLevels surface = measure_emitter(own.vertices, own.triangles, stopped, is_one_sided(own));
         if (!(surface.area > 0)) {
             continue;
         }
-        if (surface.closed && !surface.one_sided && surface.radius > most) {
+        const bool surrounds = surface.closed && !surface.one_sided && surface.radius > most;
+        if (surrounds || count + own.triangles.size() > kMostJoinedFaces) {
             add_lights(own, stopped, lights);
             continue;
         }
+        count += own.triangles.size();
         auto alike = std::ranges::find_if(joined, [&](const JoinedFaces& part) { return part.takes(own, surface); });
         if (alike == joined.end()) {
             joined.push_back({own.traits, surface.closed, surface.one_sided, {}, {}, {}, {}});

@@ -3,6 +3,8 @@
 // The emissive faces of meshes as lights. Those of a scene with many of them are lights together.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,8 +24,9 @@ struct EmissiveFaces {
     LightTraits traits;
 };
 
-/// Of all instances of a mesh, which EmissiveMesh::instance counts from `first`.
-std::vector<EmissiveFaces> emissive_faces(const CompiledMesh& compiled, std::uint32_t first);
+/// Calls visit with the emissive faces of each instance of a mesh. EmissiveMesh::instance counts these from `first`.
+void visit_emissive_faces(const CompiledMesh& compiled, std::uint32_t first,
+                          const std::function<void(EmissiveFaces&&)>& visit);
 
 /// Adds the flat parts of the faces as lights, or all as one, if they have too many corners. Throws RenderCancelled
 /// once stopped.

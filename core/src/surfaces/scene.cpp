@@ -117,7 +117,7 @@ void CompiledScene::join_mesh_lights(std::size_t lamps, const Stopped& stopped) 
     std::vector<EmissiveFaces> faces;
     std::uint32_t first_instance = 0;
     for (const std::shared_ptr<const CompiledMesh>& mesh : placed_->meshes()) {
-        std::ranges::move(emissive_faces(*mesh, first_instance), std::back_inserter(faces));
+        visit_emissive_faces(*mesh, first_instance, [&](EmissiveFaces&& own) { faces.push_back(std::move(own)); });
         first_instance += static_cast<std::uint32_t>(mesh->mesh->transforms.size());
     }
     lights_.erase(lights_.begin() + static_cast<std::ptrdiff_t>(lamps), lights_.end());
