@@ -108,6 +108,22 @@ def test_emissive_meshes_stay_lit_where_others_are_removed() -> None:
     np.testing.assert_array_equal(picture(scene), picture(other))
 
 
+def test_many_meshes_that_shine_look_as_if_made_so() -> None:
+    """More than are lights of their own."""
+    small = 0.05 * WALL
+    places = np.tile(np.eye(4), (150, 1, 1))
+    places[:, :3, 3] = np.random.default_rng(5).uniform((-1, -1, 0.5), (1, 1, 1), (150, 3))
+    moved = places + 0.3 * np.eye(4, k=3)
+    scene, made = scene_of()[0], scene_of()[0]
+    mesh = scene.add_mesh(small, FACES, emission=[3, 2, 1], transforms=places)
+    before = picture(scene)
+    mesh.set_transforms(moved)
+    made.add_mesh(small, FACES, emission=[3, 2, 1], transforms=moved)
+    changed = picture(scene)
+    np.testing.assert_array_equal(changed, picture(made))
+    assert not np.array_equal(changed, before)
+
+
 def test_lamps_are_replaced() -> None:
     scene, _ = scene_of(emission=[0, 0.1, 0])
     scene.set_environment([0.1, 0.1, 0.2])

@@ -178,7 +178,7 @@ class SceneMeshes:
     def _shining_place(self, key: tuple[Any, ...], shown: Any) -> int:
         """The number of the mesh, among those of this key, that the next instance is an instance of."""
         self._shining_places[key] += 1
-        if self._shining_places[key] > MOST_SHINING_PLACES:
+        if self._shining_places[key] == MOST_SHINING_PLACES + 1:
             text = f"only {MOST_SHINING_PLACES} of its instances shine as their place has it; the others as the last"
             self.report.add(_place_of(shown), text, Effect.LIGHT)
         return min(self._shining_places[key], MOST_SHINING_PLACES)

@@ -22,6 +22,7 @@
 
 namespace shlight {
 
+struct JoinedLights;
 class PlacedMeshes;
 class Scene;
 class VisibleLamps;
@@ -68,8 +69,8 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
     /// numbered in mesh_numbers_.
     void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const CompiledScene* before,
                const Stopped& stopped);
-    /// Makes one light of those of the meshes, which follow so many lamps, if there are many.
-    void join_mesh_lights(std::size_t lamps, const Stopped& stopped);
+    /// Makes few lights of those of the meshes, which follow so many lamps, if there are many.
+    void join_mesh_lights(std::size_t lamps, const CompiledScene* before, const Stopped& stopped);
     void build_rays(const CompiledScene* before, const Stopped& stopped);
     void find_light_groups();
     void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth, std::span<Rgb> passed,
@@ -80,6 +81,7 @@ class CompiledScene : public SurfaceTransparency, public std::enable_shared_from
     std::vector<std::uint64_t> mesh_numbers_;
     std::vector<Material> materials_;
     std::vector<Light> lights_;
+    std::shared_ptr<const JoinedLights> joined_lights_;  // null: those of the meshes are few
     std::size_t extended_light_count_ = 0;
     Environment environment_, background_;
     bool background_visible_;

@@ -199,7 +199,12 @@ void add_lights(const EmissiveFaces& faces, const Stopped& stopped, std::vector<
     lights.emplace_back(std::move(light));
 }
 
-std::vector<Light> joined_lights(std::span<const EmissiveFaces> faces, const Stopped& stopped) {
+JoinedLights joined_lights(std::vector<PlacedEmitter> emitters, const Stopped& stopped) {
+    std::vector<EmissiveFaces> faces;
+    for (const PlacedEmitter& emitter : emitters) {
+        visit_emissive_faces(*emitter.mesh, emitter.first_instance,
+                             [&](EmissiveFaces&& own) { faces.push_back(std::move(own)); });
+    }
     std::vector<JoinedFaces> joined;
     std::vector<Light> lights;
     const double most = kSurrounding * radius_of(faces);
@@ -225,7 +230,7 @@ std::vector<Light> joined_lights(std::span<const EmissiveFaces> faces, const Sto
     for (JoinedFaces& part : joined) {
         lights.emplace_back(part.light(stopped));
     }
-    return lights;
+    return {std::move(emitters), std::move(lights)};
 }
 
 }  // namespace shlight

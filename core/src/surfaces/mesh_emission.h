@@ -32,8 +32,22 @@ void visit_emissive_faces(const CompiledMesh& compiled, std::uint32_t first,
 /// once stopped.
 void add_lights(const EmissiveFaces& faces, const Stopped& stopped, std::vector<Light>& lights);
 
-/// The lights of all these, of which those with the same traits are one: its faces are found by a tree, while each of
-/// many lights is looked at from every hit. Throws RenderCancelled once stopped.
-std::vector<Light> joined_lights(std::span<const EmissiveFaces> faces, const Stopped& stopped);
+/// A mesh that shines in a scene.
+struct PlacedEmitter {
+    std::shared_ptr<const CompiledMesh> mesh;
+    std::uint32_t first_instance;
+
+    bool operator==(const PlacedEmitter&) const = default;
+};
+
+/// The lights of many meshes, of which those with the same traits are one: its faces are found by a tree, while each of
+/// many lights is looked at from every hit.
+struct JoinedLights {
+    std::vector<PlacedEmitter> emitters;
+    std::vector<Light> lights;
+};
+
+/// Throws RenderCancelled once stopped.
+JoinedLights joined_lights(std::vector<PlacedEmitter> emitters, const Stopped& stopped);
 
 }  // namespace shlight

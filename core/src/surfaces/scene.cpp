@@ -99,7 +99,7 @@ void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> mesh
         }
         placed_->add(std::move(mesh), first_material);
     }
-    join_mesh_lights(lamps, stopped);
+    join_mesh_lights(lamps, before, stopped);
     const auto first_delta =
         std::stable_partition(lights_.begin(), lights_.end(), [](const Light& light) { return !is_delta(light); });
     extended_light_count_ = static_cast<std::size_t>(first_delta - lights_.begin());
@@ -110,18 +110,24 @@ void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> mesh
     find_light_groups();
 }
 
-void CompiledScene::join_mesh_lights(std::size_t lamps, const Stopped& stopped) {
+void CompiledScene::join_mesh_lights(std::size_t lamps, const CompiledScene* before, const Stopped& stopped) {
     if (lights_.size() - lamps <= kMostMeshLights) {
         return;
     }
-    std::vector<EmissiveFaces> faces;
+    std::vector<PlacedEmitter> emitters;
     std::uint32_t first_instance = 0;
     for (const std::shared_ptr<const CompiledMesh>& mesh : placed_->meshes()) {
-        visit_emissive_faces(*mesh, first_instance, [&](EmissiveFaces&& own) { faces.push_back(std::move(own)); });
+        if (!mesh->lights.empty()) {
+            emitters.push_back({mesh, first_instance});
+        }
         first_instance += static_cast<std::uint32_t>(mesh->mesh->transforms.size());
     }
+    const bool knows = before != nullptr && before->joined_lights_ != nullptr;
+    joined_lights_ = knows && before->joined_lights_->emitters == emitters
+                         ? before->joined_lights_
+                         : std::make_shared<const JoinedLights>(joined_lights(std::move(emitters), stopped));
     lights_.erase(lights_.begin() + static_cast<std::ptrdiff_t>(lamps), lights_.end());
-    std::ranges::move(joined_lights(faces, stopped), std::back_inserter(lights_));
+    lights_.insert(lights_.end(), joined_lights_->lights.begin(), joined_lights_->lights.end());
 }
 
 void CompiledScene::build_rays(const CompiledScene* before, const Stopped& stopped) {
