@@ -104,13 +104,11 @@ def test_degenerate_faces_and_many_emitters(studio: Any) -> None:
     made.data.polygons.foreach_set("use_smooth", [True] * 3)
     assert messages() == []
     assert np.isfinite(studio.render("SHLIGHT")).all()
-    studio.ball(0.2, glow, location=(0, 0, 2)).name = "Bulb"
-    assert messages() == []  # a mesh of many faces is one light
     box = studio.box((0.1, 0.1, 0.1), glow, name="Cube")
-    for index in range(19):
+    for index in range(29):
         studio.link("Copy", box.data, (0.2 * index, 0, 2))
-    (line,) = messages()
-    assert "Object 'Cube': its emissive faces are up to 240 lights" in line
+    assert messages() == []
+    assert np.isfinite(studio.render("SHLIGHT")).all()
 
 
 # --- lamps

@@ -109,7 +109,7 @@ def test_emissive_meshes_stay_lit_where_others_are_removed() -> None:
 
 
 def test_many_meshes_that_shine_look_as_if_made_so() -> None:
-    """More than are lights of their own."""
+    """There are more lights than are looked at one by one."""
     small = 0.05 * WALL
     places = np.tile(np.eye(4), (150, 1, 1))
     places[:, :3, 3] = np.random.default_rng(5).uniform((-1, -1, 0.5), (1, 1, 1), (150, 3))
