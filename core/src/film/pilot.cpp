@@ -18,8 +18,8 @@ constexpr int kPilotStep = 8;
 constexpr int kMostPilotPixels = 16;
 /// Pilot pixels per batch.
 constexpr std::size_t kPilotBatch = 32;
-/// Bound of the error of light that is summed up over faces ÷ the noise that is asked for. The error is smooth, and a
-/// third of its bound inside a dome, a fifth where thousands of faces are about.
+/// Bound of the error of light that is summed up over faces ÷ the noise that is asked for. The error is smooth, and two
+/// thirds of its bound under a hundred balls, a tenth under a torus.
 constexpr double kFaceShare = 1;
 
 /// Turns the bits of a coordinate that a seed names: sets that are spread evenly stay so.
