@@ -67,8 +67,8 @@ void FaceTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t last
         const double area = glm::length(normal);
         made.part.area += area;
         made.part.turns += area > 0 ? glm::outerProduct(normal, normal / area) : glm::dmat3(0);
-        radiance += glm::length(normal) * Vec3d(f.radiance);
-        moment += glm::length(normal) / 3 * (f.a + f.b + f.c);
+        radiance += area * Vec3d(f.radiance);
+        moment += area / 3 * (f.a + f.b + f.c);
         for (const Vec3d& corner : {f.a, f.b, f.c}) {
             low = glm::min(low, corner);
             high = glm::max(high, corner);

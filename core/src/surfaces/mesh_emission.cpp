@@ -78,12 +78,13 @@ std::vector<Light> flat_parts(const EmissiveFaces& faces) {
 struct SidePart {
     SidePart(const CompiledMesh& compiled, FaceSide side) {
         const SceneMesh& mesh = *compiled.mesh;
-        std::vector<std::uint32_t> number(compiled.vertices().size(), kUnused);
+        std::vector<std::uint32_t> number;  // most meshes do not shine
         for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
             const Rgb emitted = mesh.emitted(mesh.shape->material_index(i)).part(side);
             if (emitted == Rgb(0)) {
                 continue;
             }
+            number.resize(compiled.vertices().size(), kUnused);
             Triangle triangle = mesh.shape->triangles[i];
             for (int corner = 0; corner < 3; ++corner) {
                 std::uint32_t& own = number[triangle[corner]];
