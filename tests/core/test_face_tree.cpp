@@ -188,6 +188,60 @@ TEST(FaceSampler, BringsTheSumOverAllFaces) {
     }
 }
 
+Solid rough_ground(std::uint32_t width, RandomInput& random) {
+    Solid ground;
+    for (std::uint32_t y = 0; y <= width; ++y) {
+        for (std::uint32_t x = 0; x <= width; ++x) {
+            ground.vertices.emplace_back(x, y, random.uniform(0, 0.7));
+        }
+    }
+    for (std::uint32_t y = 0; y < width; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::uint32_t a = y * (width + 1) + x;
+            ground.triangles.push_back({a, a + 1, a + width + 2});
+            ground.triangles.push_back({a, a + width + 2, a + width + 1});
+        }
+    }
+    return ground;
+}
+
+/// Of a surface that lights itself most comes from the few faces beside the hit, of thousands. Drawn more rarely than
+/// they bring light they would be missing in most pixels, and far too bright in some.
+TEST(FaceSampler, DrawsTheFacesBesideAHitAsTheyBringLight) {
+    RandomInput random(7);
+    Emitter ground = {rough_ground(80, random), {}, false};
+    ground.radiance.assign(ground.solid.triangles.size(), Rgb(1));
+    const FaceTree faces = ground.faces();
+    for (int i = 0; i < 10; ++i) {
+        const auto number = static_cast<std::ptrdiff_t>(random.uniform(4000, 8000));
+        const Triangle own = ground.solid.triangles[static_cast<std::size_t>(number)];
+        const auto [a, b, c] =
+            std::array{ground.solid.vertices[own.x], ground.solid.vertices[own.y], ground.solid.vertices[own.z]};
+        const Vec3d z = glm::normalize(glm::cross(b - a, c - a));
+        const Vec3d x = perpendicular(z);
+        const View view = {{(a + b + c) / 3.0, x, glm::cross(z, x), z}, Vec3d(0, 0, 1)};
+        FaceSampler sampler;
+        sampler.reset(faces, view.frame, 1e-6);
+        double sum = 0;
+        double squares = 0;
+        constexpr int kSamples = 4000;
+        for (int k = 0; k < kSamples; ++k) {
+            const auto sample = sampler.sample({random.uniform(0, 1), random.uniform(0, 1)});
+            const double value =
+                sample ? lobe_value(LambertShape{}, sample->direction, view.to_viewer) / sample->density : 0;
+            sum += value;
+            squares += value * value;
+        }
+        const double mean = sum / kSamples;
+        const double deviation = std::sqrt(std::max(squares / kSamples - mean * mean, 0.0));
+        Emitter others = ground;
+        others.solid.triangles.erase(others.solid.triangles.begin() + number);
+        const double truth = brute_force(others, LambertShape{}, view).x;
+        EXPECT_NEAR(mean, truth, 4.5 * deviation / std::sqrt(double{kSamples}) + 0.003 * truth) << "hit " << i;
+        EXPECT_LE(deviation, 3 * truth) << "hit " << i;
+    }
+}
+
 bool shows_front_only(const FaceTree& faces, const Vec3d& point) {
     return faces.viewpoint({point, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0).front_only;
 }

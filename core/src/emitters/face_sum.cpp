@@ -173,10 +173,8 @@ void FaceSum::open_worst(double allowed, Vec3d& near_light, std::vector<NearFace
 }
 
 void FaceSum::add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const {
-    const Vec3d normal = glm::cross(face.b - face.a, face.c - face.a);
-    const double height = -glm::dot(normal, face.a - frame_->origin);
-    // The face that was hit, and others in its plane, would cover half of space or nothing, as rounding has it.
-    if (!(std::abs(height) > clearance_ * glm::length(normal))) {
+    const double height = FaceTree::height_over(face, frame_->origin);
+    if (!(std::abs(height) > clearance_)) {
         return;
     }
     const std::array<Vec3d, 3> corners = {frame_->point_to_local(face.a), frame_->point_to_local(face.b),
@@ -195,7 +193,7 @@ void FaceSum::add_up(const FaceTree& faces, const Vec3d& view, const ShadingFram
     lobes_ = lobes;
     view_ = view;
     front_only_ = viewpoint.front_only;
-    clearance_ = glm::distance(viewpoint.start, frame.origin);
+    clearance_ = viewpoint.clearance;
     cut_.clear();
     values_.clear();
     opened_.assign(1, 0);

@@ -124,6 +124,10 @@ bool FaceTree::is_front(const Face& face, const Vec3d& direction) {
     return glm::dot(glm::cross(face.b - face.a, face.c - face.a), direction) < 0;
 }
 
+double FaceTree::height_over(const Face& face, const Vec3d& point) {
+    return glm::dot(glm::normalize(glm::cross(face.b - face.a, face.c - face.a)), point - face.a);
+}
+
 const FaceTree::Face* FaceTree::face_at(const Vec3d& point, const Vec3d& direction) const {
     const Ray ray = {Vec3f(point), 0, Vec3f(direction)};
     RayHit met;
@@ -138,8 +142,9 @@ Rgb FaceTree::from(const FaceViewpoint& viewpoint, const Vec3d& direction) const
 }
 
 FaceViewpoint FaceTree::viewpoint(const ShadingFrame& frame, double error) const {
-    const Vec3d start = frame.origin + (error + kMeshRounding * radius()) * frame.z;
-    return {start, shows_front_only(start)};
+    const double clearance = error + kMeshRounding * radius();
+    const Vec3d start = frame.origin + clearance * frame.z;
+    return {start, clearance, shows_front_only(start)};
 }
 
 bool FaceTree::shows_front_only(const Vec3d& point) const {

@@ -44,7 +44,9 @@ struct FacePart {
 
 /// The start of rays to faces, and the side of those that shine there.
 struct FaceViewpoint {
-    Vec3d start;      ///< over a hit: rays from there do not meet the surface that was hit
+    Vec3d start;       ///< over a hit: rays from there do not meet the surface that was hit
+    double clearance;  ///< of the start: a face from whose plane the hit is no farther is taken to be level with it,
+                       ///< and dark; it would cover half of space or nothing, as rounding has it
     bool front_only;  ///< only faces that turn their outer side to it: others are dark there, or hidden by them
 };
 
@@ -103,6 +105,8 @@ class FaceTree {
     bool shows_front_only(const Vec3d& point) const;
     /// Whether a ray meets the outer side of a face.
     static bool is_front(const Face& face, const Vec3d& direction);
+    /// Of a point over the outer side of the face's plane; NaN: the face has no area.
+    static double height_over(const Face& face, const Vec3d& point);
     /// The faces first … last - 1 of a node are halved here.
     static std::uint32_t middle_of(std::uint32_t first, std::uint32_t last) { return first + (last - first) / 2; }
     /// The first face that a ray meets, from whatever side, or null.

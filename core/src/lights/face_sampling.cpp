@@ -7,11 +7,16 @@
 #include <limits>
 #include <numbers>
 
+#include "regions/spherical_polygon.h"
+
 namespace shlight {
 namespace {
 
 /// Distance of a face's middle ÷ the distance of its corners from there, below which the face is near.
 constexpr double kNearFace = 3;
+/// Radius ÷ distance from which on a node is split. From the root down a face at the hit's side would be drawn as
+/// rarely as the tree is deep, however much it brings.
+constexpr double kWide = 0.5;
 
 }  // namespace
 
@@ -23,18 +28,52 @@ void FaceSampler::reset(const FaceTree& faces, const ShadingFrame& frame, double
     const double square = glm::dot(way, way);
     solid_angle_ = square > faces.radius() * faces.radius() ? std::min(faces.area() / square, 2 * std::numbers::pi)
                                                             : 2 * std::numbers::pi;
+    parts_.clear();
+    split(0, 0, static_cast<std::uint32_t>(faces.faces_.size()));
 }
 
-double FaceSampler::importance(const FaceTree::Node& node) const {
+void FaceSampler::split(std::uint32_t node, std::uint32_t first, std::uint32_t last) {
+    const FaceTree::Node& own = faces_->nodes_[node];
+    const PartView seen = view(own);
+    if (seen.hidden) {
+        return;
+    }
+    if (seen.width > kWide && own.first_child != FaceTree::kLeaf) {
+        const std::uint32_t middle = FaceTree::middle_of(first, last);
+        split(own.first_child, first, middle);
+        split(own.first_child + 1, middle, last);
+        return;
+    }
+    const double before = parts_.empty() ? 0 : parts_.back().up_to;
+    const double brings = importance(own, seen);
+    if (before + brings > before) {
+        parts_.push_back({before + brings, node, first, last});
+    }
+}
+
+double FaceSampler::importance(const FaceTree::Node& node, const PartView& seen) const {
     const FacePart& part = node.part;
-    const PartView seen(part, frame_, viewpoint_.front_only, node.first_child == FaceTree::kLeaf);
     if (seen.hidden) {
         return 0;
+    }
+    const bool is_face = node.first_child == FaceTree::kLeaf;
+    if (is_face && seen.width > 1 / kNearFace) {
+        return importance_of_near(node);
     }
     const double area = viewpoint_.front_only ? seen.facing : std::abs(seen.facing);
     const double shown = seen.one_side ? area : std::max(area, 0.5 * seen.unclear);
     const double square = std::max(seen.distance * seen.distance, part.radius * part.radius);
     return part.brightness * shown * std::min(1.0, seen.rise + seen.width) / square;
+}
+
+double FaceSampler::importance_of_near(const FaceTree::Node& node) const {
+    const FaceTree::Face& face = faces_->faces_[node.face];
+    if (!(std::abs(FaceTree::height_over(face, frame_.origin)) > viewpoint_.clearance)) {
+        return 0;
+    }
+    const auto [a, b, c] = std::array{face.a - frame_.origin, face.b - frame_.origin, face.c - frame_.origin};
+    const double highest = std::max({glm::dot(frame_.z, a), glm::dot(frame_.z, b), glm::dot(frame_.z, c)});
+    return highest > 0 ? node.part.brightness * std::abs(triangle_solid_angle(a, b, c)) : 0;
 }
 
 double FaceSampler::share_of_first(std::uint32_t first_child) const {
@@ -44,9 +83,17 @@ double FaceSampler::share_of_first(std::uint32_t first_child) const {
 }
 
 std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
-    double place = point.x;
-    double probability = 1;
-    std::uint32_t node = 0;
+    if (parts_.empty()) {
+        return std::nullopt;
+    }
+    const double all = parts_.back().up_to;
+    const auto part = std::upper_bound(parts_.begin(), parts_.end() - 1, point.x * all,
+                                       [](double sought, const Part& each) { return sought < each.up_to; });
+    const double before = part == parts_.begin() ? 0 : (part - 1)->up_to;
+    const double own = part->up_to - before;
+    double place = std::clamp((point.x * all - before) / own, 0.0, 1.0);
+    double probability = own / all;
+    std::uint32_t node = part->node;
     while (faces_->nodes_[node].first_child != FaceTree::kLeaf) {
         node = faces_->nodes_[node].first_child;
         const double share = share_of_first(node);
@@ -89,15 +136,21 @@ std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) {
     if (!(density > 0) || !std::isfinite(density)) {
         return std::nullopt;
     }
-    const auto leaf = static_cast<std::uint32_t>(face - faces_->faces_.data());
-    return FaceSample{direction, probability(leaf) * density, face->radiance, false};
+    density *= probability(static_cast<std::uint32_t>(face - faces_->faces_.data()));
+    return FaceSample{direction, density, face->radiance, false};
 }
 
 double FaceSampler::probability(std::uint32_t leaf) const {
-    double probability = 1;
-    std::uint32_t node = 0;
-    auto last = static_cast<std::uint32_t>(faces_->faces_.size());
-    for (std::uint32_t first = 0; last - first > 1;) {
+    const auto part = std::upper_bound(parts_.begin(), parts_.end(), leaf,
+                                       [](std::uint32_t sought, const Part& each) { return sought < each.last; });
+    if (part == parts_.end() || leaf < part->first) {
+        return 0;
+    }
+    const double before = part == parts_.begin() ? 0 : (part - 1)->up_to;
+    double probability = (part->up_to - before) / parts_.back().up_to;
+    std::uint32_t node = part->node;
+    std::uint32_t last = part->last;
+    for (std::uint32_t first = part->first; last - first > 1;) {
         node = faces_->nodes_[node].first_child;
         const double share = share_of_first(node);
         const std::uint32_t middle = FaceTree::middle_of(first, last);

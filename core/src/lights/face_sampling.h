@@ -24,8 +24,8 @@ struct FaceSample {
     bool hidden;      ///< another face of the emitter is before it
 };
 
-/// Descends the faces' tree by the radiance, area and angles of its nodes (Conty Estevez & Kulla 2018, Importance
-/// Sampling of Many Lights with Adaptive Tree Splitting).
+/// Descends the faces' tree by the radiance, area and angles of its nodes, from those that are far enough to be judged
+/// as a whole (Conty Estevez & Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree Splitting).
 class FaceSampler {
   public:
     /// error: of the hit's position.
@@ -39,7 +39,16 @@ class FaceSampler {
 
   private:
     /// An estimate of what a node brings; it is 0 only if that is nothing.
-    double importance(const FaceTree::Node& node) const;
+    double importance(const FaceTree::Node& node) const { return importance(node, view(node)); }
+    double importance(const FaceTree::Node& node, const PartView& seen) const;
+    PartView view(const FaceTree::Node& node) const {
+        return {node.part, frame_, viewpoint_.front_only, node.first_child == FaceTree::kLeaf};
+    }
+    /// The same of a face that is near.
+    double importance_of_near(const FaceTree::Node& node) const;
+    /// Appends the parts below a node, of the faces first … last - 1, that are not too near to be drawn from as a
+    /// whole.
+    void split(std::uint32_t node, std::uint32_t first, std::uint32_t last);
     /// The share of the first of two children that are neighbours.
     double share_of_first(std::uint32_t first_child) const;
     /// The probability of the face at this place of the tree.
@@ -54,7 +63,14 @@ class FaceSampler {
     /// Density of a way to a point of a face that is drawn evenly over its area; 0 where it does not shine.
     double density_over(const FaceTree::Face& face, const Vec3d& way) const;
 
+    /// A node, which has the faces first … last - 1.
+    struct Part {
+        double up_to;  // importance of the parts to this one
+        std::uint32_t node, first, last;
+    };
+
     const FaceTree* faces_ = nullptr;
+    std::vector<Part> parts_;  // that shine on the hit
     ShadingFrame frame_{};
     FaceViewpoint viewpoint_{};
     double solid_angle_ = 0;
