@@ -72,12 +72,18 @@ DIFFUSE_KEEPS_ENERGY = VERSION >= (4, 3, 0)
 TURNS_DIFFUSE_NORMALS = not IS_BLENDER_4
 # The shadow that bumps throw on themselves by name of `Shader.with_bump_shadow`.
 BUMP_SHADOW: Literal["ggx", "cubic"] = "ggx" if VERSION >= (4, 5, 0) else "cubic"
-# Methods of subsurface scattering by Blender's names.
-SUBSURFACE_METHODS: dict[str, Literal["burley", "random_walk", "random_walk_skin"]] = (
-    {"BURLEY": "burley", "RANDOM_WALK": "random_walk", "RANDOM_WALK_SKIN": "random_walk_skin"}
-    if IS_BLENDER_4
-    else {"BURLEY": "burley", "RANDOM_WALK_FIXED_RADIUS": "random_walk", "RANDOM_WALK": "random_walk_skin"}
-)
+_SubsurfaceMethod = Literal["burley", "random_walk", "random_walk_skin", "random_walk_van_de_hulst"]
+# Methods of subsurface scattering by Blender's names, of which "Random Walk" is another one in each.
+SUBSURFACE_METHODS: dict[str, _SubsurfaceMethod] = {"BURLEY": "burley"}
+if not IS_BLENDER_4:
+    SUBSURFACE_METHODS |= {"RANDOM_WALK_FIXED_RADIUS": "random_walk", "RANDOM_WALK": "random_walk_skin"}
+elif VERSION < (5, 2, 0):
+    SUBSURFACE_METHODS |= {"RANDOM_WALK": "random_walk", "RANDOM_WALK_SKIN": "random_walk_skin"}
+else:
+    SUBSURFACE_METHODS |= {"RANDOM_WALK": "random_walk_van_de_hulst", "RANDOM_WALK_SKIN": "random_walk_skin"}
+    SUBSURFACE_METHODS |= {"RANDOM_WALK_LEGACY": "random_walk"}
+# The least mean cosine of a direction that is scattered below a surface.
+LEAST_ANISOTROPY = -0.99 if VERSION >= (5, 2, 0) else 0.0
 # Light enters bodies from all sides, or is bent by their surface.
 SUBSURFACE_ENTRY_IS_DIFFUSE = not IS_BLENDER_4
 # The definition of a Voronoi Texture, as `nodes.voronoi` numbers them.
@@ -86,6 +92,10 @@ CELLS = 3 if not IS_BLENDER_4 else 4 if VERSION < (5, 0, 0) else 5
 MAGIC_WRAPS_SCALED = VERSION >= (5, 2, 0)
 # Tangents of a mesh without a UV map go across the seam of its angles, or turn back there.
 ANGLES_TURN = VERSION >= (5, 0, 0)
+# The normal of a tangent space has length 1, or that of what is interpolated between the normals of corners.
+TANGENT_SPACE_IS_UNIT = VERSION >= (5, 1, 0)
+# The pixel that stands for a missing picture fades towards its edges where the texture is clipped there.
+MISSING_PICTURE_FADES = VERSION < (5, 2, 0)
 # An IES Texture interpolates at the edges of its table with the values there beyond them, or with 0.
 IES_KEEPS_EDGES = VERSION >= (5, 0, 1)
 # Faces without material have a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8.

@@ -112,7 +112,10 @@ def test_every_view_layer_has_its_picture(studio: Any, kind: str) -> None:
 def test_paths_that_are_not_utf8(studio: Any) -> None:
     folder = os.fsencode(studio.folder) + b"/b\xfccher"
     Path(os.fsdecode(folder)).mkdir()
-    write_png(os.fsdecode(folder + b"/t.png"), np.full((8, 16, 3), (20, 200, 20), np.uint8))
+    try:
+        write_png(os.fsdecode(folder + b"/t.png"), np.full((8, 16, 3), (20, 200, 20), np.uint8))
+    except OSError as error:
+        pytest.skip(str(error))
     shutil.copy(folder + b"/t.png", studio.folder / "t.png")
     image = bpy.data.images.load(str(studio.folder / "t.png"))
     image.filepath = os.fsdecode(folder + b"/t.png")

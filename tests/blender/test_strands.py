@@ -63,10 +63,11 @@ def cloud(studio: Any, material: Any, **place: Any) -> Any:
     new, link = tree.nodes.new, tree.links.new
     start, end, points = new("NodeGroupInput"), new("NodeGroupOutput"), new("GeometryNodeMeshToPoints")
     random, paint = new("FunctionNodeRandomValue"), new("GeometryNodeSetMaterial")
-    random.inputs[2].default_value, random.inputs[3].default_value = 0.03, 0.2
+    sizes = [socket for socket in random.inputs if socket.type == "VALUE" and socket.enabled]
+    sizes[0].default_value, sizes[1].default_value = 0.03, 0.2
     paint.inputs["Material"].default_value = material
     link(start.outputs[0], points.inputs["Mesh"])
-    link(random.outputs[1], points.inputs["Radius"])
+    link(next(socket for socket in random.outputs if socket.enabled), points.inputs["Radius"])
     link(points.outputs[0], paint.inputs["Geometry"])
     link(paint.outputs[0], end.inputs[0])
     made.modifiers.new("Nodes", "NODES").node_group = tree

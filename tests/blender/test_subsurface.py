@@ -11,6 +11,7 @@ import pytest
 SKIN = {"Color": (0.8, 0.5, 0.3), "Radius": (1.0, 0.2, 0.1)}
 PRINCIPLED = "ShaderNodeBsdfPrincipled"
 SCATTERING = "ShaderNodeSubsurfaceScattering"
+SINCE_52 = pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="this version has no such method")
 
 
 def add_ball(studio: Any, material: Any) -> None:
@@ -45,6 +46,19 @@ def light(studio: Any) -> None:
             {"falloff": "RANDOM_WALK_SKIN", "Scale": 0.3, "Anisotropy": 0.6},
             id="skin",
             marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            add_ball,
+            {"falloff": "RANDOM_WALK_LEGACY", "Scale": 0.2, "Anisotropy": -0.3},
+            id="legacy backward",
+            marks=SINCE_52,
+        ),
+        pytest.param(add_cube, {"falloff": "RANDOM_WALK_LEGACY", "Scale": 0.6}, id="legacy", marks=SINCE_52),
+        pytest.param(
+            add_cube, {"falloff": "RANDOM_WALK", "Scale": 0.1, "Anisotropy": -0.5}, id="backward", marks=SINCE_52
+        ),
+        pytest.param(
+            add_cube, {"falloff": "RANDOM_WALK", "Scale": 0.03, "Anisotropy": 0.6}, id="forward", marks=SINCE_52
         ),
         pytest.param(add_ball, {"falloff": "BURLEY", "Scale": 0.5}, id="burley"),
         pytest.param(add_ball, {"falloff": "RANDOM_WALK", "Scale": 1e-9}, id="none", marks=pytest.mark.slow),

@@ -14,7 +14,7 @@ from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_obj
 from shlight.nodes.mathematics import reflect
 from shlight.nodes.values import clamp, cross, dot, length, maximum, normalize, number, operation, select, sqrt
 
-from ..compat import filter_width
+from ..compat import TANGENT_SPACE_IS_UNIT, filter_width
 from ..names import name_of
 from .camera import View
 from .mesh_attributes import (
@@ -310,8 +310,14 @@ def _normal_map(inputs: NodeInputs) -> Vector:
     color: Vector = inputs.color("Color")
     if node.space.startswith("BLENDER"):
         color = Vector(color.x, 1.0 - color.y, 1.0 - color.z)
+    if getattr(node, "convention", "") == "DIRECTX":
+        color = Vector(color.x, 1.0 - color.y, color.z)
     return nodes.normal_map(
-        color, inputs.number("Strength"), space=space, tangents=f"{TANGENT}{name_of(node, 'uv_map')}"
+        color,
+        inputs.number("Strength"),
+        space=space,
+        tangents=f"{TANGENT}{name_of(node, 'uv_map')}",
+        unit_normal=TANGENT_SPACE_IS_UNIT,
     )
 
 

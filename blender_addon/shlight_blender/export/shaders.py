@@ -17,6 +17,7 @@ from ..compat import (
     BOUNCES_ARE_DIMMED,
     DIFFUSE_KEEPS_ENERGY,
     FRESNEL_MODEL,
+    LEAST_ANISOTROPY,
     PRINCIPLED_IS_LAYERED,
     SUBSURFACE_ENTRY_IS_DIFFUSE,
     SUBSURFACE_METHODS,
@@ -95,6 +96,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     if inputs.is_linked("Normal") and given["Diffuse Roughness"].constant != 0.0:
         inputs.remark_rough_bumps()
+    given["Subsurface Anisotropy"] = maximum(inputs.number("Subsurface Anisotropy"), LEAST_ANISOTROPY)
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
         inputs.color("Base Color"),
@@ -201,7 +203,7 @@ def _subsurface(inputs: NodeInputs) -> Shader:
         method=SUBSURFACE_METHODS[own],
         roughness=sqrt(inputs.number("Roughness")),
         ior=inputs.number("IOR"),
-        anisotropy=inputs.number("Anisotropy"),
+        anisotropy=maximum(inputs.number("Anisotropy"), LEAST_ANISOTROPY),
         diffuse_entry=SUBSURFACE_ENTRY_IS_DIFFUSE,
         at=inputs.linked_vector("Normal"),
     )

@@ -10,6 +10,7 @@ from shlight import nodes
 from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import Number, clamp, dot, equal, maximum, normalize, operation, select, sqrt
 
+from ..compat import MISSING_PICTURE_FADES
 from ..names import name_of
 from ..report import Effect
 from .cell_nodes import CELL_NODES
@@ -36,7 +37,7 @@ FIRST_TILE = 1001
 def image_texture(inputs: NodeInputs) -> Color | Value:
     """An Image Texture node."""
     textures = _textures(inputs)
-    is_even = textures is missing_texture() and _extension(inputs.node) != "clip"
+    is_even = textures is missing_texture() and not (MISSING_PICTURE_FADES and _extension(inputs.node) == "clip")
     place = nodes.values.vector((0.5, 0.5, 0.0)) if is_even else inputs.vector_or("Vector", nodes.uv(""))
     found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found

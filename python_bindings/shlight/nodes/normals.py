@@ -37,7 +37,14 @@ def choose(condition: Number, if_true: Vector, if_false: Vector) -> Vector:
     return Vector(*(select(condition, a, b) for a, b in zip(if_true, if_false, strict=True)))
 
 
-def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent", tangents: str = "tangents") -> Vector:
+def normal_map(
+    color: Varying,
+    strength: Number = 1.0,
+    *,
+    space: str = "tangent",
+    tangents: str = "tangents",
+    unit_normal: bool = False,
+) -> Vector:
     """The normal that a picture holds as (n + 1) / 2.
 
     Light is not linear in normals: a lobe at their mean is not the mean of their lobes. So pictures in the colour are
@@ -46,6 +53,8 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
     space: "tangent", "object" or "world". The tangent space is that of the mesh's normal as it is interpolated, as in
         Cycles: where Shader.with_normal bends normals, this one stays.
     tangents: the mesh attribute of the tangent space: per corner the tangent and the bitangent's sign.
+    unit_normal: the normal of the tangent space has length 1, as in Cycles since 5.1. Otherwise it is as long as what
+        is interpolated between the normals of corners, which is shorter where these differ, as in Cycles before.
     """
     n = Vector(*on_ray(vector(color), None, filtered=False)) * 2.0 - 1.0
     s = number(strength)
@@ -53,7 +62,7 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
     if space == "tangent":
         known = attribute(tangents)
         along = Vector(known.x, known.y, known.z)
-        up = mesh_normal() * flip
+        up = (normalize(mesh_normal()) if unit_normal else mesh_normal()) * flip
         across = cross(up, along) * known.alpha
         height = 1.0 + clamp(s) * (n.z - 1.0)
         bent = along * (n.x * s) + across * (n.y * s) + up * height

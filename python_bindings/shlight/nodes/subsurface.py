@@ -25,7 +25,7 @@ from shlight.nodes.values import (
     vector,
 )
 
-SubsurfaceMethod = Literal["burley", "random_walk", "random_walk_skin"]
+SubsurfaceMethod = Literal["burley", "random_walk", "random_walk_skin", "random_walk_van_de_hulst"]
 
 # How rays enter: shlight::SubsurfaceEntry.
 REFRACTED, SKIN, DIFFUSE, DISK = range(4)
@@ -69,9 +69,10 @@ def subsurface(
 
     albedo: what a thick body of it reflects, 0 … 1, clamped. radius: [m], of each channel, how far light gets, as the
     method takes it: "burley" has the diffusion profile of Christensen & Burley 2015, the others walk at random through
-    the body, which the mesh bounds. roughness, ior: of the surface that bends what enters, alpha = roughness²; index
-    1.01 … 3.8, clamped; anisotropy: the mean cosine of a scattered direction, 0 … 0.9, clamped; diffuse_entry: rays
-    enter like diffuse light, as before Blender 4. Raises ValueError naming an argument.
+    the body, which the mesh bounds; of "random_walk_van_de_hulst", Blender 5.2's Random Walk, it is the mean free path.
+    roughness, ior: of the surface that bends what enters, alpha = roughness²; index 1.01 … 3.8, clamped; anisotropy:
+    the mean cosine of a scattered direction, -0.99 … 0.9, or up to 0.99 with "random_walk_van_de_hulst", clamped;
+    diffuse_entry: rays enter like diffuse light, as before Blender 4. Raises ValueError naming an argument.
     """
     method = checked_method("method", method)
     rho = reflectance(albedo, "albedo")
@@ -80,11 +81,14 @@ def subsurface(
     n = None if at is None else vector(at, "at")
     width = clamp(number(roughness, "roughness"))
     index = clamp(number(ior, "ior"), 1.01, 3.8)
-    g = clamp(number(anisotropy, "anisotropy"), 0.0, 0.9)
+    is_free = method == "random_walk_van_de_hulst"
+    g = clamp(number(anisotropy, "anisotropy"), -0.99, 0.99 if is_free else 0.9)
     if far.constant is not None and max(far.constant) < LEAST_RADIUS:
         return lambert(rho, n)
     if method == "random_walk_skin":
         scaled = [r * sqrt(3.0 * (1.0 - _dipole_albedo(a, index))) for r, a in zip(far, known, strict=True)]
+    elif is_free:
+        scaled = list(far)
     else:
         scaled = [r * (0.25 / math.pi) for r in far]
     if method == "burley":
@@ -92,8 +96,10 @@ def subsurface(
         numbers: list[Value] = [1.0 / d for d in scaled] + [number(0.0)] * 3 + [number(1.0)] * 3
         entry = DISK
     else:
-        single = [_single_albedo(a, g) for a in known]
-        numbers = [1.0 / (d * (1.0 - g)) for d in scaled] + [maximum(a, LEAST_ALBEDO) for a in single]
+        similar = number(1.0) if is_free else g < 0.0  # Wrenninge's polynomials are of g from 0 on
+        single = [select(similar, _similar_albedo(a, g), _single_albedo(a, maximum(g, 0.0))) for a in known]
+        numbers = [1.0 / (d * select(similar, 1.0, 1.0 - g)) for d in scaled]
+        numbers += [maximum(a, LEAST_ALBEDO) for a in single]
         numbers += [select(a < LEAST_ALBEDO, a / LEAST_ALBEDO, 1.0) / r for a, r in zip(single, known, strict=True)]
         entry = DIFFUSE if diffuse_entry else SKIN if method == "random_walk_skin" else REFRACTED
     numbers[:3] = [select(r < LEAST_RADIUS, 0.0, own) for r, own in zip(far, numbers, strict=False)]
@@ -125,6 +131,13 @@ def _single_albedo(reflected: Value, g: Value) -> Value:
     low = (1.0 - blend) * _polynomial(A, g) * angle(B, B_EXPONENT) ** _polynomial(C, g)
     high = blend * _polynomial(D, g) * angle(E, E_EXPONENT) ** _polynomial(F, g)
     return clamp(low + high, 0.0, 0.999999)
+
+
+def _similar_albedo(reflected: Value, g: Value) -> Value:
+    """The same by Van de Hulst's relation of similarity (d'Eon, A Hitchhiker's Guide to Multiple Scattering, 53.7)."""
+    root = sqrt(9.59217 + reflected * (41.6808 + 17.7126 * reflected))
+    s = 4.20863 * reflected + 4.09712 - root
+    return clamp((1.0 - s * s) / (1.0 - g * s * s), 0.0, 0.999999)
 
 
 def _dipole_albedo(reflected: Value, index: Value) -> Value:
