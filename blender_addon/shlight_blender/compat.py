@@ -68,6 +68,8 @@ FRESNEL_MODEL: Literal["exact", "large_index"] = "exact" if VERSION >= (5, 0, 0)
 BOUNCES_ARE_DIMMED = not IS_BLENDER_4
 # Rough diffuse surfaces return the light that the first bounce loses.
 DIFFUSE_KEEPS_ENERGY = VERSION >= (4, 3, 0)
+# How much of it, by name of `nodes.oren_nayar`.
+DIFFUSE_MODEL: Literal["dimmed", "openpbr"] = "openpbr" if VERSION >= (5, 3, 0) else "dimmed"
 # Diffuse normals, too, are turned until the mirror image of the viewer is above the surface.
 TURNS_DIFFUSE_NORMALS = not IS_BLENDER_4
 # The shadow that bumps throw on themselves by name of `Shader.with_bump_shadow`.

@@ -433,7 +433,8 @@ constexpr const char* kPrincipledDoc =
     R"(anisotropic=0.0, anisotropic_rotation=0.0, tangent=None, )"
     R"(subsurface_weight=0.0, subsurface_radius=(1.0, 0.2, 0.1), subsurface_scale=0.05, subsurface_ior=1.4, )"
     R"(subsurface_anisotropy=0.0, subsurface_method='random_walk', )"
-    R"(thin_film_thickness=0.0, thin_film_ior=1.33, thin_film_model='spectral', several_bounces=False, at=None)
+    R"(thin_film_thickness=0.0, thin_film_ior=1.33, thin_film_model='spectral', )"
+    R"(diffuse_model='dimmed', several_bounces=False, at=None)
 
 A Shader: Blender's Principled BSDF, see shlight.nodes.principled.)";
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
 
@@ -67,6 +68,20 @@ def test_simplify_limits_subdivision_and_not_textures(studio: Any) -> None:
     studio.scene.render.use_simplify, studio.scene.cycles.texture_limit_render = True, "128"
     studio.compare(error=1e-3)
     assert studio.messages() == ["Scene 'Scene': Simplify's Texture Limit is not supported; textures keep their size"]
+
+
+@pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="this version has no thin walls")
+def test_thin_walls_are_named(studio: Any) -> None:
+    material = studio.material("ShaderNodeBsdfPrincipled")
+    wall = material.node_tree.nodes["Principled BSDF"].inputs
+    wall["Thin Wall"].default_value = True
+    studio.plane(material=material)
+    studio.camera()
+    studio.area(100)
+    assert studio.messages() == []
+    wall["Subsurface Weight"].default_value = 0.5
+    (message,) = studio.messages()
+    assert message.endswith("a thin wall is not supported; it is drawn as the surface of a body")
 
 
 @pytest.mark.parametrize("source", ["strength", "pixels", "nodes"])

@@ -216,6 +216,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "several_bounces": False,
             "subsurface_method": "burley",
             "thin_film_model": "gaussians",
+            "diffuse_model": "openpbr",
         },
     ),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),

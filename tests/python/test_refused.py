@@ -40,6 +40,7 @@ OF_NODES: dict[str, tuple[Any, str, tuple[Any, ...]]] = {
     "film": (lambda nm: nodes.principled(thin_film_thickness=nm), "thin_film_thickness", ("thick", NAN, INF)),
     "film_ior": (lambda ior: nodes.glass(0.5, 0.1, thin_film_ior=ior), "thin_film_ior", ("high", NAN, INF)),
     "film_model": (lambda name: nodes.principled(thin_film_model=name), "thin_film_model", (None, "spectrum", 1)),
+    "diffuse_model": (lambda name: nodes.oren_nayar(0.5, 1.0, diffuse_model=name), "diffuse_model", (None, "fujii", 1)),
     "fibres": (lambda roughness: nodes.microfibre(0.5, roughness), "roughness", ("high", NAN, INF)),
     "velvet": (lambda sigma: nodes.velvet(0.5, sigma), "sigma", ("high", NAN, INF)),
     "toon": (lambda size: nodes.toon(0.5, size, 0.0), "size", ("high", NAN, INF)),

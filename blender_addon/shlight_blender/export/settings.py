@@ -90,7 +90,10 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "a rolling shutter is not supported; all of the picture is taken at the same times")
     if getattr(render, "use_freestyle", False):
         report.add(place, "Freestyle lines are not supported; left out")
-    limit = getattr(getattr(scene, "cycles", None), "texture_limit_render", "OFF")
+    cycles = getattr(scene, "cycles", None)
+    if render.use_simplify and getattr(cycles, "texture_resolution_render", 1.0) < 1.0 and bpy.data.images:
+        report.add(place, "Simplify's Texture Resolution is not supported; textures keep their size", Effect.SLIGHT)
+    limit = getattr(cycles, "texture_limit_render", "OFF")
     if render.use_simplify and limit != "OFF" and any(max(image.size) > int(limit) for image in bpy.data.images):
         report.add(place, "Simplify's Texture Limit is not supported; textures keep their size", Effect.SLIGHT)
     if working_space() != REC709:

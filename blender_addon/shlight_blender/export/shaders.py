@@ -16,6 +16,7 @@ from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, numbe
 from ..compat import (
     BOUNCES_ARE_DIMMED,
     DIFFUSE_KEEPS_ENERGY,
+    DIFFUSE_MODEL,
     FRESNEL_MODEL,
     LEAST_ANISOTROPY,
     PRINCIPLED_IS_LAYERED,
@@ -82,6 +83,20 @@ def _remark_film_inside(inputs: NodeInputs, thin: _ThinFilm) -> None:
         inputs.remark("its thin film is not seen from inside of the body", Effect.SLIGHT)
 
 
+# Inputs that some versions have, and what is drawn whatever they say.
+UNREAD = {
+    "Thin Wall": "a thin wall is not supported; it is drawn as the surface of a body",
+    "Transmission Dispersion Scale": "dispersion is not supported; light of all colours is bent alike",
+    "Anisotropy": "anisotropic glass is not supported; it is drawn as if Anisotropy were 0",
+}
+
+
+def _remark_unread(inputs: NodeInputs, *names: str) -> None:
+    for name in names:
+        if name in inputs.node.inputs and inputs.number(name).constant != 0.0:
+            inputs.remark(UNREAD[name])
+
+
 def _read_layered(inputs: NodeInputs) -> Shader:
     metallic = inputs.number("Metallic").constant
     if metallic != 0.0:
@@ -90,6 +105,9 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     if inputs.number("Transmission Weight").constant != 0.0:
         inputs.remark_glass("'Transmission Weight'")
         _remark_film_inside(inputs, thin)
+        _remark_unread(inputs, "Thin Wall", "Transmission Dispersion Scale")
+    elif inputs.number("Subsurface Weight").constant != 0.0:
+        _remark_unread(inputs, "Thin Wall")
     index = inputs.number("IOR").constant
     if index is not None and index < 1.0 and metallic != 1.0:
         inputs.remark("an 'IOR' below 1 reflects as its reciprocal does")
@@ -107,6 +125,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
         tangent=_tangent(inputs),
         at=inputs.linked_vector("Normal"),
         thin_film_model=THIN_FILM_MODEL,
+        diffuse_model=DIFFUSE_MODEL,
         **thin,
         **{name.lower().replace(" ", "_"): value for name, value in given.items()},
     )
@@ -226,7 +245,13 @@ def _diffuse(inputs: NodeInputs) -> Shader:
     roughness, at = inputs.number("Roughness"), inputs.diffuse_normal()
     if at is not None and roughness.constant != 0.0:
         inputs.remark_rough_bumps()
-    return nodes.oren_nayar(positive(inputs.color("Color")), roughness, several_bounces=DIFFUSE_KEEPS_ENERGY, at=at)
+    return nodes.oren_nayar(
+        positive(inputs.color("Color")),
+        roughness,
+        several_bounces=DIFFUSE_KEEPS_ENERGY,
+        diffuse_model=DIFFUSE_MODEL,
+        at=at,
+    )
 
 
 class _Microfacets(TypedDict):
@@ -306,6 +331,7 @@ def _glass(inputs: NodeInputs) -> Shader:
         inputs.remark(f"what goes through is bent by GGX, not by {inputs.node.distribution}", Effect.SLIGHT)
     if inputs.node.type == "BSDF_REFRACTION":
         return nodes.refraction(tint, roughness, ior, at=inputs.linked_vector("Normal"))
+    _remark_unread(inputs, "Anisotropy")
     thin = _thin_film(inputs)
     _remark_film_inside(inputs, thin)
     return nodes.glass(tint, roughness, ior, **thin, **_microfacets(inputs))

@@ -170,6 +170,8 @@ def simplify_more(layout: Any, context: Any) -> None:
     cycles = context.scene.cycles
     layout.active = context.scene.render.use_simplify
     layout.prop(cycles, "texture_limit_render", text="Texture Limit")
+    if hasattr(cycles, "texture_resolution_render"):
+        layout.prop(cycles, "texture_resolution_render", text="Texture Resolution")
     for kind in ("camera", "distance"):
         row = layout.row(align=True)
         row.prop(cycles, f"use_{kind}_cull", text=f"{kind.title()} Culling")

@@ -321,13 +321,25 @@ def _oren_nayar_rise(cosine: Value) -> Value:
     return select(cosine < 1e-6, (math.pi / 2 - 2.0 / 3.0) - cosine, whole)
 
 
-def oren_nayar(albedo: Varying, sigma: Number, *, several_bounces: bool = True, at: Vector | None = None) -> Shader:
+DiffuseModel = Literal["dimmed", "openpbr"]
+
+
+def oren_nayar(
+    albedo: Varying,
+    sigma: Number,
+    *,
+    several_bounces: bool = True,
+    diffuse_model: DiffuseModel = "dimmed",
+    at: Vector | None = None,
+) -> Shader:
     """A rough diffuse surface: the improved Oren–Nayar model of Fujii with the light of several bounces (OpenPBR).
 
     It is a sum of three shapes without parameters: Lambert's, the same times 1 + t, where t is what light and view have
     in common along the surface, and what the model's first bounce loses. sigma: 0 … 1, clamped.
-    several_bounces: the last is there, as in Cycles since Blender 4.3.
+    several_bounces: the last is there, as in Cycles since Blender 4.3. diffuse_model: "dimmed" multiplies it by the
+        albedo once more than light bounces, as before Blender 5.3; "openpbr" does not.
     """
+    checked_name("diffuse_model", diffuse_model, get_args(DiffuseModel))
     rho = reflectance(albedo, "albedo")
     rough = clamp(number(sigma, "sigma"))
     if rough.constant == 0.0:
@@ -347,7 +359,8 @@ def oren_nayar(albedo: Varying, sigma: Number, *, several_bounces: bool = True, 
     own = a * math.pi + b * _oren_nayar_rise(maximum(dot(towards_viewer(), n), 0.0))
     mean = a * math.pi + b * ((2.0 * math.pi - 5.6) / 3.0)
     saturated = clamped(rho)
-    again = saturated * saturated * ((mean / (1.0 - mean)) / math.pi) / (1.0 - saturated * (1.0 - mean))
+    dimmed = saturated * saturated if diffuse_model == "dimmed" else saturated
+    again = dimmed * ((mean / (1.0 - mean)) / math.pi) / (1.0 - saturated * (1.0 - mean))
     varies = select(rough > 0.0, 1.0, 0.0)
     return first + Shader((Lobe("oren_nayar_loss", color(rho * again * (1.0 - own) * b * varies), normal=at),))
 
@@ -449,6 +462,7 @@ def principled(
     thin_film_thickness: Number = 0.0,
     thin_film_ior: Number = 1.33,
     thin_film_model: FilmModel = "spectral",
+    diffuse_model: DiffuseModel = "dimmed",
     several_bounces: bool = False,
     at: Vector | None = None,
 ) -> Shader:
@@ -457,7 +471,7 @@ def principled(
     Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
     its normal; tangent: a world vector, needed where `anisotropic` is not 0; thin_film_thickness: [nm];
     thin_film_model: "spectral", as since Blender 5.0, or before that "gaussians", which approximates colours and has no
-    films on metals. Raises ValueError naming an argument that is not finite.
+    films on metals; diffuse_model: see oren_nayar. Raises ValueError naming an argument that is not finite.
 
     >>> paint = nodes.principled((0.6, 0.05, 0.02), roughness=0.4, coat_weight=1.0)
     >>> ball = shlight.Scene().add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], bsdf=paint)
@@ -555,7 +569,7 @@ def principled(
         body = subsurface(f0_of_metal, far, method=method, roughness=rough, ior=bent, anisotropy=forward, at=at)
         result += body * (weight * below)
         weight = color(weight * (1.0 - below))
-    return result + oren_nayar(base, diffuse_width, at=at) * weight
+    return result + oren_nayar(base, diffuse_width, diffuse_model=diffuse_model, at=at) * weight
 
 
 def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:
