@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -213,6 +215,19 @@ TEST(Polygon, WithAVertexAtTheShadingPointIsRefused) {
         const Vertices vertices = {{2, 0, 2}, {2, 2, 2}, {off, 0, 0}, {0, 0, 0}};
         expect_one_rule_in_plane<double>(vertices, true, true);
         expect_one_rule_in_plane<float>(vertices, true, false);
+    }
+}
+
+/// The corners are rounded to either side of the shading point, which would be in a region and out of it.
+TEST(Polygon, ASliverAroundTheShadingPointCoversNoMoreThanHalf) {
+    const Vertices sliver = {{-2.83561228e-08, 8.87846012e-16, 3.83362249e-08},
+                             {-6.86540072e-13, 1.39320803e-12, -5.07812488e-13},
+                             {2.83561281e-08, -4.22506848e-19, -3.8336232e-08},
+                             {6.86538988e-13, -1.3932089e-12, 5.07811675e-13}};
+    for (const bool clip : {false, true}) {
+        const double half = std::sqrt(std::numbers::pi);  // L_00 of half the sphere
+        EXPECT_LE(coefficients<float>(sliver, 3, clip)[0], half * (1 + 1e-6));
+        EXPECT_GE(coefficients<float>(sliver, 3, clip)[0], 0);
     }
 }
 

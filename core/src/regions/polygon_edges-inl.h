@@ -104,13 +104,30 @@ class VertexLanes {
         const auto distance =
             hn::Mul(dot<double>(normal, sum), all(d, 1 / static_cast<double>(polygons_.vertex_count)));
         const auto least = hn::Mul(all(d, kEdgeOn * kEdgeOn), hn::Mul(farthest, dot<double>(normal, normal)));
-        const auto seen = hn::Gt(hn::Mul(distance, distance), least);
+        const auto square = hn::Mul(distance, distance);
+        auto seen = hn::Gt(square, least);
+        const auto rounded = hn::Mul(all(d, kRounded * kRounded), hn::Mul(farthest, dot<double>(normal, normal)));
+        const auto level = hn::And(seen, hn::Lt(square, rounded));
+        if (!hn::AllFalse(d, level)) {
+            seen = hn::AndNot(hn::And(level, is_among_corners(normal)), seen);
+        }
         const auto side = hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
         const auto length = hn::Sqrt(hn::Max(dot<double>(normal, normal), all(d, std::numeric_limits<double>::min())));
         return {side, scaled<double>(normal, hn::Div(side, length))};
     }
 
   private:
+    /// Whether corners lie on both sides of the plane through the origin with this normal.
+    HWY_NOINLINE M<D> is_among_corners(const Vectors3<double>& normal) const {
+        auto low = dot<double>(normal, vertex(0));
+        auto high = low;
+        for (std::size_t i = 1; i < polygons_.vertex_count; ++i) {
+            const auto height = dot<double>(normal, vertex(i));
+            low = hn::Min(low, height);
+            high = hn::Max(high, height);
+        }
+        return hn::And(hn::Lt(low, hn::Zero(D())), hn::Gt(high, hn::Zero(D())));
+    }
     /// Powers of two change no digit, and squares of tiny and huge coordinates stay in the range of float. A lane of a
     /// usual unit has the scale 1, since its own subnormal coordinates would lose digits.
     HWY_NOINLINE void rescale(V<D> scale) {

@@ -13,6 +13,8 @@ namespace shlight {
 
 /// A plane is seen edge-on if its distance from the origin is at most this part of that of its farthest point.
 inline constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
+/// Nearer than this part of it, the corners of a sliver in float may be off its plane by as much as the origin is.
+inline constexpr double kRounded = 4 * std::numeric_limits<float>::epsilon();
 
 /// Distance of the origin from the polygon's plane times twice its area, positive if the vertices are seen
 /// counter-clockwise from the origin's antipode, that is with the interior on the left of each edge; 0 if edge-on.
