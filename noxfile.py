@@ -7,8 +7,10 @@ from __future__ import annotations
 import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 import nox
+from nox.command import CommandFailed
 
 # Versions of CPython, Blender and numpy that go together.
 BLENDERS = [("3.11", "4.2", "numpy>=1.26,<2"), ("3.11", "5.0", "numpy>=1.26,<2"), ("3.13", "5.2", "numpy>=2")]
@@ -31,6 +33,18 @@ def build(session: nox.Session, folder: str, options: list[str], *targets: str) 
     session.run("cmake", "--build", folder, "--target", *targets, external=True)
 
 
+def run_each(session: nox.Session, *commands: list[str], **options: Any) -> None:
+    """Runs all of them, and fails after the last if any has."""
+    failed = []
+    for command in commands:
+        try:
+            session.run(*command, **options)
+        except CommandFailed:
+            failed.append(" ".join(command))
+    if failed:
+        session.error("\n".join(failed))
+
+
 @nox.session(reuse_venv=True)
 @nox.parametrize(("python", "blender", "numpy"), BLENDERS, ids=[blender for _, blender, _ in BLENDERS])
 def blender(session: nox.Session, blender: str, numpy: str) -> None:
@@ -42,8 +56,8 @@ def blender(session: nox.Session, blender: str, numpy: str) -> None:
     path = ":".join(str(ROOT / name) for name in ("python_bindings", "blender_addon", "tools"))
     others = ["-m", "not slow", "tests/blender", *(f"--ignore={name}" for name in LAMPS + LEFT_OUT)]
     zipped = ["tests/extension/test_dist.py::test_the_zip_is_an_extension"]
-    for tests in (LAMPS, others, zipped):
-        session.run("python", "-m", "pytest", "-q", *tests, *session.posargs, env={"PYTHONPATH": path})
+    runs = [["python", "-m", "pytest", "-q", *tests, *session.posargs] for tests in (LAMPS, others, zipped)]
+    run_each(session, *runs, env={"PYTHONPATH": path})
 
 
 FUZZ_SECONDS = 60  # of each target
@@ -66,11 +80,13 @@ def fuzz(session: nox.Session) -> None:
     install(session)
     seconds, *names = session.posargs or [str(FUZZ_SECONDS)]
     build(session, "build/asan", ["--preset", "asan"], "shlight_fuzzers")
+    runs = []
     for name in names or sorted(path.stem for path in (ROOT / "tests/fuzz").glob("*.cpp")):
         corpus = ROOT / "build/fuzz" / name
         corpus.mkdir(parents=True, exist_ok=True)
         options = [f"-max_total_time={seconds}", f"-artifact_prefix={corpus}-", *FUZZ_OPTIONS]
-        session.run(f"build/asan/tests/fuzz/fuzz_{name}", *options, str(corpus), external=True)
+        runs.append([f"build/asan/tests/fuzz/fuzz_{name}", *options, str(corpus)])
+    run_each(session, *runs, external=True)
 
 
 def linked_package(folder: Path) -> Path:
