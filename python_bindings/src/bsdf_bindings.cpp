@@ -432,7 +432,7 @@ constexpr const char* kPrincipledDoc =
     R"(sheen_tint=(1.0, 1.0, 1.0), transmission_weight=0.0, emission_color=(1.0, 1.0, 1.0), emission_strength=0.0, )"
     R"(anisotropic=0.0, anisotropic_rotation=0.0, tangent=None, )"
     R"(subsurface_weight=0.0, subsurface_radius=(1.0, 0.2, 0.1), subsurface_scale=0.05, subsurface_ior=1.4, )"
-    R"(subsurface_anisotropy=0.0, subsurface_method='random_walk', )"
+    R"(subsurface_anisotropy=0.0, subsurface_method='random_walk', thin_wall=False, )"
     R"(thin_film_thickness=0.0, thin_film_ior=1.33, thin_film_model='spectral', )"
     R"(diffuse_model='dimmed', several_bounces=False, at=None)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 import numpy as np
 import pytest
 
@@ -70,18 +69,12 @@ def test_simplify_limits_subdivision_and_not_textures(studio: Any) -> None:
     assert studio.messages() == ["Scene 'Scene': Simplify's Texture Limit is not supported; textures keep their size"]
 
 
-@pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="this version has no thin walls")
-def test_thin_walls_are_named(studio: Any) -> None:
-    material = studio.material("ShaderNodeBsdfPrincipled")
-    wall = material.node_tree.nodes["Principled BSDF"].inputs
-    wall["Thin Wall"].default_value = True
-    studio.plane(material=material)
-    studio.camera()
-    studio.area(100)
-    assert studio.messages() == []
-    wall["Subsurface Weight"].default_value = 0.5
+def test_caustics_that_are_off_are_named(studio: Any) -> None:
+    studio.lit_floor()
+    studio.scene.cycles.caustics_reflective = studio.scene.cycles.caustics_refractive = False
+    studio.scene.shlight.max_bounces = 1
     (message,) = studio.messages()
-    assert message.endswith("a thin wall is not supported; it is drawn as the surface of a body")
+    assert message.endswith("Reflective and Refractive Caustics are off, which is not supported; they are drawn")
 
 
 @pytest.mark.parametrize("source", ["strength", "pixels", "nodes"])

@@ -39,6 +39,8 @@ NO_CONTROL = {
         "sample_offset",
         "sample_subset_length",
         "use_sample_subset",  # of comparisons
+        "caustics_reflective",
+        "caustics_refractive",  # read to name them
     },
     # Blender's modifier panel shows it; the second is an older name of what an own panel shows.
     "CyclesObjectSettings": {

@@ -64,3 +64,35 @@ def test_light_that_only_the_camera_sees(studio: Any) -> None:
     tree.links.new(mixed.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
     studio.plane(1.0, made, location=(0, 0, 0.5))
     studio.compare()
+
+
+@pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="this version has no thin walls")
+@pytest.mark.parametrize("kind", ["pane", "rough pane", "leaf", "rough leaf"])
+def test_thin_walls(studio: Any, kind: str) -> None:
+    """A pane that light passes and mirrors, and a leaf that shines on both sides, upright on a floor that glows."""
+    inputs = {"Thin Wall": True, "Base Color": (0.9, 0.5, 0.3, 1.0), "Roughness": 0.0}
+    if kind.endswith("pane"):
+        inputs |= {"Transmission Weight": 1.0, "IOR": 1.8, "Specular Tint": (0.5, 1.0, 1.0, 1.0)}
+    else:
+        inputs |= {"Subsurface Weight": 0.8, "Subsurface Anisotropy": 0.3, "Roughness": 0.6}
+    if kind == "rough pane":
+        inputs["Roughness"] = 0.3
+    if kind == "rough leaf":
+        inputs["Diffuse Roughness"] = 0.5
+    material = studio.material("ShaderNodeBsdfPrincipled")
+    for name, value in inputs.items():
+        material.node_tree.nodes["Principled BSDF"].inputs[name].default_value = value
+    studio.plane(2.0, material, location=(0, 0, 0.6), rotation_euler=(1.2, 0, 0.4))
+    glows = studio.material("ShaderNodeEmission", Strength=0.2)  # on which the pane throws nothing
+    studio.plane(8.0, glows, location=(0, 0, -0.5))
+    studio.area(150, (1.0, 2.0, 2.5), size=0.5)
+    studio.camera((0.5, -5, 2), (0, 0, 0.3))
+    bounces = 1 if kind.endswith("pane") else 0
+    cycles = studio.scene.cycles
+    cycles.max_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
+    studio.scene.shlight.max_bounces, cycles.samples = bounces, 512
+    messages = studio.messages()
+    assert [line for line in messages if "thin wall" in line] == messages
+    assert len(messages) == kind.startswith("rough")
+    if not kind.startswith("rough"):
+        studio.compare(mean=4e-3, error=1e-3)

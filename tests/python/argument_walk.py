@@ -217,6 +217,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "subsurface_method": "burley",
             "thin_film_model": "gaussians",
             "diffuse_model": "openpbr",
+            "thin_wall": False,
         },
     ),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),

@@ -93,6 +93,9 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     cycles = getattr(scene, "cycles", None)
     if render.use_simplify and getattr(cycles, "texture_resolution_render", 1.0) < 1.0 and bpy.data.images:
         report.add(place, "Simplify's Texture Resolution is not supported; textures keep their size", Effect.SLIGHT)
+    kinds = [kind for kind in ("Reflective", "Refractive") if not getattr(cycles, f"caustics_{kind.lower()}", True)]
+    if kinds and scene.shlight.max_bounces > 0:
+        report.add(place, f"{' and '.join(kinds)} Caustics are off, which is not supported; they are drawn")
     limit = getattr(cycles, "texture_limit_render", "OFF")
     if render.use_simplify and limit != "OFF" and any(max(image.size) > int(limit) for image in bpy.data.images):
         report.add(place, "Simplify's Texture Limit is not supported; textures keep their size", Effect.SLIGHT)

@@ -85,16 +85,27 @@ def _remark_film_inside(inputs: NodeInputs, thin: _ThinFilm) -> None:
 
 # Inputs that some versions have, and what is drawn whatever they say.
 UNREAD = {
-    "Thin Wall": "a thin wall is not supported; it is drawn as the surface of a body",
     "Transmission Dispersion Scale": "dispersion is not supported; light of all colours is bent alike",
     "Anisotropy": "anisotropic glass is not supported; it is drawn as if Anisotropy were 0",
 }
 
 
-def _remark_unread(inputs: NodeInputs, *names: str) -> None:
-    for name in names:
-        if name in inputs.node.inputs and inputs.number(name).constant != 0.0:
-            inputs.remark(UNREAD[name])
+def _remark_unread(inputs: NodeInputs, name: str) -> None:
+    if name in inputs.node.inputs and inputs.number(name).constant != 0.0:
+        inputs.remark(UNREAD[name])
+
+
+def _is_thin_wall(inputs: NodeInputs) -> bool:
+    """Whether the node is a wall without thickness; reports what of it is drawn otherwise."""
+    thin = inputs.number("Thin Wall").constant if "Thin Wall" in inputs.node.inputs else 0.0
+    if thin is None:
+        inputs.remark("a 'Thin Wall' that varies is not supported; it is drawn as off")
+    through = inputs.number("Transmission Weight").constant
+    if thin and through != 0.0 and inputs.number("Roughness").constant != 0.0:
+        inputs.remark("what passes through a rough thin wall is sharp")
+    if thin and 0.0 not in (inputs.number(name).constant for name in ("Subsurface Weight", "Diffuse Roughness")):
+        inputs.remark("light passes a rough thin wall as it passes a smooth one", Effect.SLIGHT)
+    return bool(thin)
 
 
 def _read_layered(inputs: NodeInputs) -> Shader:
@@ -102,12 +113,11 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     if metallic != 0.0:
         inputs.remark_nothing_reflected()
     thin = _thin_film(inputs)
-    if inputs.number("Transmission Weight").constant != 0.0:
+    is_thin_wall = _is_thin_wall(inputs)
+    if inputs.number("Transmission Weight").constant != 0.0 and not is_thin_wall:
         inputs.remark_glass("'Transmission Weight'")
         _remark_film_inside(inputs, thin)
-        _remark_unread(inputs, "Thin Wall", "Transmission Dispersion Scale")
-    elif inputs.number("Subsurface Weight").constant != 0.0:
-        _remark_unread(inputs, "Thin Wall")
+        _remark_unread(inputs, "Transmission Dispersion Scale")
     index = inputs.number("IOR").constant
     if index is not None and index < 1.0 and metallic != 1.0:
         inputs.remark("an 'IOR' below 1 reflects as its reciprocal does")
@@ -121,6 +131,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
         coat_normal=inputs.linked_vector("Coat Normal"),
         subsurface_radius=inputs.vector("Subsurface Radius"),
         subsurface_method=SUBSURFACE_METHODS[inputs.node.subsurface_method],
+        thin_wall=is_thin_wall,
         several_bounces=inputs.node.distribution == "MULTI_GGX",
         tangent=_tangent(inputs),
         at=inputs.linked_vector("Normal"),

@@ -15,6 +15,7 @@ from shlight.nodes.films import FACTORS, Film, FilmModel, film, film_factors, fi
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
 from shlight.nodes.subsurface import SubsurfaceMethod, checked_method, subsurface
+from shlight.nodes.thin_walls import leaf, thin_glass
 from shlight.nodes.values import (
     Color,
     Number,
@@ -459,6 +460,7 @@ def principled(
     subsurface_ior: Number = 1.4,
     subsurface_anisotropy: Number = 0.0,
     subsurface_method: SubsurfaceMethod = "random_walk",
+    thin_wall: bool = False,
     thin_film_thickness: Number = 0.0,
     thin_film_ior: Number = 1.33,
     thin_film_model: FilmModel = "spectral",
@@ -471,7 +473,9 @@ def principled(
     Arguments are the node's inputs, clamped as it clamps them; several_bounces: its distribution Multiscatter GGX; at:
     its normal; tangent: a world vector, needed where `anisotropic` is not 0; thin_film_thickness: [nm];
     thin_film_model: "spectral", as since Blender 5.0, or before that "gaussians", which approximates colours and has no
-    films on metals; diffuse_model: see oren_nayar. Raises ValueError naming an argument that is not finite.
+    films on metals; diffuse_model: see oren_nayar; thin_wall: the surface is a wall without thickness, which light
+    passes on a straight way and unscattered, and which subsurface scattering makes a leaf. Raises ValueError naming an
+    argument that is not finite.
 
     >>> paint = nodes.principled((0.6, 0.05, 0.02), roughness=0.4, coat_weight=1.0)
     >>> ball = shlight.Scene().add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], bsdf=paint)
@@ -537,7 +541,12 @@ def principled(
         result += Shader(stretched(own_lobes, stretch))
         weight = color(weight * (1.0 - metal))
     through = clamp(number(transmission_weight, "transmission_weight"))
-    if through.constant != 0.0:
+    is_thin = checked_flag("thin_wall", thin_wall)
+    if through.constant != 0.0 and is_thin:
+        f0, bent = clamped(tint * head_on(index)), maximum(index, 1.0 / index)
+        result += thin_glass(color(weight * through), base, f0, bent, rough * rough, glossy_normal)
+        weight = color(weight * (1.0 - through))
+    elif through.constant != 0.0:
         f0 = clamped(tint * head_on(index))
         own = color(weight * through)
         on_glass = None if thin is None else thin._replace(below=index)
@@ -564,12 +573,15 @@ def principled(
         lobes, passed = _dielectric(weight, f0, index, glossy_width, glossy_normal, several_bounces=several, thin=thin)
         result += Shader(stretched(lobes, stretch))
         weight = color(weight * passed)
+    diffuse = oren_nayar(base, diffuse_width, diffuse_model=diffuse_model, at=at)
+    if below.constant != 0.0 and is_thin:
+        return result + (leaf(diffuse, f0_of_metal, forward, at) * below + diffuse * (1.0 - below)) * weight
     if below.constant != 0.0:
         bent = skin_index if method == "random_walk_skin" else index
         body = subsurface(f0_of_metal, far, method=method, roughness=rough, ior=bent, anisotropy=forward, at=at)
         result += body * (weight * below)
         weight = color(weight * (1.0 - below))
-    return result + oren_nayar(base, diffuse_width, diffuse_model=diffuse_model, at=at) * weight
+    return result + diffuse * weight
 
 
 def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:
