@@ -205,8 +205,8 @@ Solid rough_ground(std::uint32_t width, RandomInput& random) {
     return ground;
 }
 
-/// Of a surface that lights itself most comes from the few faces beside the hit, of thousands. Drawn more rarely than
-/// they bring light they would be missing in most pixels, and far too bright in some.
+/// A surface that lights itself does so by the few faces beside the hit, of thousands. If these are drawn more rarely
+/// than they bring light, most pixels lack it and some are far too bright.
 TEST(FaceSampler, DrawsTheFacesBesideAHitAsTheyBringLight) {
     RandomInput random(7);
     Emitter ground = {rough_ground(80, random), {}, false};

@@ -105,7 +105,7 @@ class FaceTree {
     bool shows_front_only(const Vec3d& point) const;
     /// Whether a ray meets the outer side of a face.
     static bool is_front(const Face& face, const Vec3d& direction);
-    /// Of a point over the outer side of the face's plane; NaN: the face has no area.
+    /// How far a point is over the outer side of the face's plane; NaN: the face has no area.
     static double height_over(const Face& face, const Vec3d& point);
     /// The faces first … last - 1 of a node are halved here.
     static std::uint32_t middle_of(std::uint32_t first, std::uint32_t last) { return first + (last - first) / 2; }
