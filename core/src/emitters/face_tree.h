@@ -47,7 +47,7 @@ struct FaceViewpoint {
     Vec3d start;       ///< over a hit: rays from there do not meet the surface that was hit
     double clearance;  ///< of the start: a face from whose plane the hit is no farther is taken to be level with it,
                        ///< and dark; it would cover half of space or nothing, as rounding has it
-    bool front_only;  ///< only faces that turn their outer side to it: others are dark there, or hidden by them
+    bool front_only;   ///< only faces that turn their outer side to it: others are dark there, or hidden by them
 };
 
 /// A part as a hit sees it.
