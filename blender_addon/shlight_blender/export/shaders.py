@@ -95,7 +95,7 @@ def _remark_unread(inputs: NodeInputs, name: str) -> None:
         inputs.remark(UNREAD[name])
 
 
-def _is_thin_wall(inputs: NodeInputs) -> bool:
+def _is_thin_wall(inputs: NodeInputs, film: _ThinFilm) -> bool:
     """Whether the node is a wall without thickness; reports what of it is drawn otherwise."""
     thin = inputs.number("Thin Wall").constant if "Thin Wall" in inputs.node.inputs else 0.0
     if thin is None:
@@ -103,6 +103,8 @@ def _is_thin_wall(inputs: NodeInputs) -> bool:
     through = inputs.number("Transmission Weight").constant
     if thin and through != 0.0 and inputs.number("Roughness").constant != 0.0:
         inputs.remark("what passes through a rough thin wall is sharp")
+    if thin and through != 0.0 and film and film["thin_film_thickness"].constant != 0.0:
+        inputs.remark("the film on a thin wall is left out")
     if thin and 0.0 not in (inputs.number(name).constant for name in ("Subsurface Weight", "Diffuse Roughness")):
         inputs.remark("light passes a rough thin wall as it passes a smooth one", Effect.SLIGHT)
     return bool(thin)
@@ -113,7 +115,7 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     if metallic != 0.0:
         inputs.remark_nothing_reflected()
     thin = _thin_film(inputs)
-    is_thin_wall = _is_thin_wall(inputs)
+    is_thin_wall = _is_thin_wall(inputs, thin)
     if inputs.number("Transmission Weight").constant != 0.0 and not is_thin_wall:
         inputs.remark_glass("'Transmission Weight'")
         _remark_film_inside(inputs, thin)

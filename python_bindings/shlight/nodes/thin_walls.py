@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from shlight.nodes.inputs import towards_viewer
 from shlight.nodes.shader import Lobe, Shader, translucent, transparent
-from shlight.nodes.values import Color, Value, Vector, clamp, color, dot, operation, sqrt
+from shlight.nodes.values import Color, Value, Vector, clamp, color, dot, maximum, operation, sqrt
 
 
 def thin_glass(weight: Color, base: Color, f0: Color, index: Value, alpha: Value, at: Vector) -> Shader:
@@ -24,8 +24,9 @@ def thin_glass(weight: Color, base: Color, f0: Color, index: Value, alpha: Value
     reflected = color(f0 + (1.0 - f0) * rise)
     left = Color(*(operation("power", clamp(component), 1.0 / inside) for component in base))
     entered = 1.0 - reflected
-    again = reflected * left
-    passes = color(left * entered * entered / (1.0 - again * again))
+    again = color(reflected * left)
+    leaves = Color(*(maximum(1.0 - component * component, 1e-9) for component in again))
+    passes = color(left * entered * entered / leaves)
     returns = color(reflected + passes * again)
     return transparent(weight * passes) + Shader((Lobe("ggx", color(weight * returns), alpha, at),))
 
