@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from shlight import nodes
 from shlight.nodes import Color, Value, Vector
+from shlight.nodes.fresnel import fresnel_of
 from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_object, point_to_world, vector_to_object
 from shlight.nodes.mathematics import reflect
 from shlight.nodes.values import clamp, cross, dot, length, maximum, normalize, number, operation, select, sqrt
@@ -232,16 +233,6 @@ def _object_info(inputs: NodeInputs) -> Expression:
         return _of_object(inputs, RANDOM, "").x
     found = _of_object(inputs, "OBJECT", "pass_index" if name == "Object Index" else "color")
     return found.alpha if name == "Alpha" else found if name == "Color" else found.x
-
-
-def fresnel_of(cosine: Value, ior: Value) -> Value:
-    """The reflectance of a dielectric, 1 under total reflection."""
-    c = abs(cosine)
-    square = ior * ior - 1.0 + c * c
-    g = sqrt(square)
-    a = (g - c) / (g + c)
-    b = (c * (g + c) - 1.0) / (c * (g - c) + 1.0)
-    return select(square > 0.0, 0.5 * a * a * (1.0 + b * b), 1.0)
 
 
 def _wireframe(inputs: NodeInputs) -> Value:

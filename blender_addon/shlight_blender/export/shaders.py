@@ -8,6 +8,7 @@ from typing import TypedDict
 from shlight import nodes
 from shlight.nodes import Shader, Vector
 from shlight.nodes.films import LEAST_THICKNESS
+from shlight.nodes.fresnel import fresnel_of
 from shlight.nodes.inputs import towards_viewer
 from shlight.nodes.principled import Distribution, aspect_stretch, dielectric_bounces, mean_roughness, stretched
 from shlight.nodes.shader import Lobe, Refraction
@@ -26,7 +27,7 @@ from ..compat import (
 )
 from ..report import Effect
 from .displacement import DISPLACEMENT_NODES
-from .input_nodes import INPUT_NODES, around, fresnel_of
+from .input_nodes import INPUT_NODES, around
 from .nodes import NodeInputs, ReadNode, own_value, positive
 from .noise_nodes import NOISE_NODES
 from .script_nodes import SCRIPT_NODES
@@ -45,7 +46,7 @@ PRINCIPLED_NUMBERS = (
     "Metallic", "Roughness", "IOR", "Alpha", "Diffuse Roughness", "Specular IOR Level", "Coat Weight",
     "Coat Roughness", "Coat IOR", "Sheen Weight", "Sheen Roughness", "Transmission Weight", "Emission Strength",
     "Anisotropic", "Anisotropic Rotation",
-    "Subsurface Weight", "Subsurface Scale", "Subsurface IOR", "Subsurface Anisotropy",
+    "Subsurface Weight", "Subsurface Scale", "Subsurface IOR",
 )  # fmt: skip
 PRINCIPLED_COLORS = ("Specular Tint", "Coat Tint", "Sheen Tint", "Emission Color")
 
@@ -110,6 +111,11 @@ def _is_thin_wall(inputs: NodeInputs, film: _ThinFilm) -> bool:
     return bool(thin)
 
 
+def _scattered_cosine(inputs: NodeInputs, name: str) -> Value:
+    """The mean cosine of directions that are scattered below the surface, as far back as this version lets them go."""
+    return maximum(inputs.number(name), LEAST_ANISOTROPY)
+
+
 def _read_layered(inputs: NodeInputs) -> Shader:
     metallic = inputs.number("Metallic").constant
     if metallic != 0.0:
@@ -126,13 +132,13 @@ def _read_layered(inputs: NodeInputs) -> Shader:
     given: dict[str, Value | Color] = {name: inputs.number(name) for name in PRINCIPLED_NUMBERS}
     if inputs.is_linked("Normal") and given["Diffuse Roughness"].constant != 0.0:
         inputs.remark_rough_bumps()
-    given["Subsurface Anisotropy"] = maximum(inputs.number("Subsurface Anisotropy"), LEAST_ANISOTROPY)
     given |= {name: inputs.color(name) for name in PRINCIPLED_COLORS}
     return nodes.principled(
         inputs.color("Base Color"),
         coat_normal=inputs.linked_vector("Coat Normal"),
         subsurface_radius=inputs.vector("Subsurface Radius"),
         subsurface_method=SUBSURFACE_METHODS[inputs.node.subsurface_method],
+        subsurface_anisotropy=_scattered_cosine(inputs, "Subsurface Anisotropy"),
         thin_wall=is_thin_wall,
         several_bounces=inputs.node.distribution == "MULTI_GGX",
         tangent=_tangent(inputs),
@@ -205,7 +211,7 @@ def _diffuse_of_sum(inputs: NodeInputs, base: Color, roughness: Value, at: Vecto
         inputs.vector("Subsurface Radius") * share,
         method=SUBSURFACE_METHODS[inputs.node.subsurface_method],
         ior=inputs.number("Subsurface IOR"),
-        anisotropy=inputs.number("Subsurface Anisotropy"),
+        anisotropy=_scattered_cosine(inputs, "Subsurface Anisotropy"),
         diffuse_entry=SUBSURFACE_ENTRY_IS_DIFFUSE,
         at=at,
     )
@@ -235,7 +241,7 @@ def _subsurface(inputs: NodeInputs) -> Shader:
         method=SUBSURFACE_METHODS[own],
         roughness=sqrt(inputs.number("Roughness")),
         ior=inputs.number("IOR"),
-        anisotropy=maximum(inputs.number("Anisotropy"), LEAST_ANISOTROPY),
+        anisotropy=_scattered_cosine(inputs, "Anisotropy"),
         diffuse_entry=SUBSURFACE_ENTRY_IS_DIFFUSE,
         at=inputs.linked_vector("Normal"),
     )

@@ -47,7 +47,7 @@ void FaceSampler::split(std::uint32_t node, std::uint32_t first, std::uint32_t l
     const double before = parts_.empty() ? 0 : parts_.back().up_to;
     const double brings = importance(own, seen);
     if (before + brings > before) {
-        parts_.push_back({before + brings, node, first, last});
+        parts_.push_back({before, before + brings, node, first, last});
     }
 }
 
@@ -89,9 +89,8 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
     const double all = parts_.back().up_to;
     const auto part = std::upper_bound(parts_.begin(), parts_.end() - 1, point.x * all,
                                        [](double sought, const Part& each) { return sought < each.up_to; });
-    const double before = part == parts_.begin() ? 0 : (part - 1)->up_to;
-    const double own = part->up_to - before;
-    double place = std::clamp((point.x * all - before) / own, 0.0, 1.0);
+    const double own = part->up_to - part->from;
+    double place = std::clamp((point.x * all - part->from) / own, 0.0, 1.0);
     double probability = own / all;
     std::uint32_t node = part->node;
     while (faces_->nodes_[node].first_child != FaceTree::kLeaf) {
@@ -146,8 +145,7 @@ double FaceSampler::probability(std::uint32_t leaf) const {
     if (part == parts_.end() || leaf < part->first) {
         return 0;
     }
-    const double before = part == parts_.begin() ? 0 : (part - 1)->up_to;
-    double probability = (part->up_to - before) / parts_.back().up_to;
+    double probability = (part->up_to - part->from) / parts_.back().up_to;
     std::uint32_t node = part->node;
     std::uint32_t last = part->last;
     for (std::uint32_t first = part->first; last - first > 1;) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
@@ -65,7 +66,7 @@ class FaceSampler {
 
     /// A node, which has the faces first … last - 1.
     struct Part {
-        double up_to;  // importance of the parts to this one
+        double from, up_to;  // its place in the sum of the importances of all
         std::uint32_t node, first, last;
     };
 

@@ -12,6 +12,7 @@ from shlight._arrays import checked_flag, checked_name
 from shlight.nodes import energy
 from shlight.nodes.fabrics import microfibre, microfibre_albedo
 from shlight.nodes.films import FACTORS, Film, FilmModel, film, film_factors, film_passes, unless_thin
+from shlight.nodes.fresnel import head_on
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
 from shlight.nodes.subsurface import SubsurfaceMethod, checked_method, subsurface
@@ -137,13 +138,6 @@ def stretched(lobes: tuple[Lobe, ...], stretch: Stretch | None) -> tuple[Lobe, .
         return lobes
     rest = (stretch.across, *stretch.tangent)
     return tuple(replace(own, kind=f"stretched_{own.kind}", alpha=stretch.along, rest=rest) for own in lobes)
-
-
-def head_on(ior: Number) -> Value:
-    """The reflectance of a dielectric for light along the normal."""
-    i = number(ior)
-    root = (i - 1.0) / (i + 1.0)
-    return root * root
 
 
 def bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
@@ -575,7 +569,7 @@ def principled(
         weight = color(weight * passed)
     diffuse = oren_nayar(base, diffuse_width, diffuse_model=diffuse_model, at=at)
     if below.constant != 0.0 and is_thin:
-        return result + (leaf(diffuse, f0_of_metal, forward, at) * below + diffuse * (1.0 - below)) * weight
+        return result + leaf(diffuse, f0_of_metal, below, forward, at) * weight
     if below.constant != 0.0:
         bent = skin_index if method == "random_walk_skin" else index
         body = subsurface(f0_of_metal, far, method=method, roughness=rough, ior=bent, anisotropy=forward, at=at)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from shlight.nodes.fresnel import fresnel_of, head_on
 from shlight.nodes.inputs import towards_viewer
 from shlight.nodes.shader import Lobe, Shader, translucent, transparent
 from shlight.nodes.values import Color, Value, Vector, clamp, color, dot, maximum, operation, sqrt
@@ -17,10 +18,7 @@ def thin_glass(weight: Color, base: Color, f0: Color, index: Value, alpha: Value
     """
     cosine = clamp(dot(towards_viewer(), at), 1e-4)
     inside = sqrt(1.0 - (1.0 - cosine * cosine) / (index * index))
-    across = (cosine - index * inside) / (cosine + index * inside)
-    along = (index * cosine - inside) / (index * cosine + inside)
-    plain = ((index - 1.0) / (index + 1.0)) * ((index - 1.0) / (index + 1.0))
-    rise = clamp((0.5 * (across * across + along * along) - plain) / (1.0 - plain))
+    rise = clamp((fresnel_of(cosine, index) - head_on(index)) / (1.0 - head_on(index)))
     reflected = color(f0 + (1.0 - f0) * rise)
     left = Color(*(operation("power", clamp(component), 1.0 / inside) for component in base))
     entered = 1.0 - reflected
@@ -31,10 +29,10 @@ def thin_glass(weight: Color, base: Color, f0: Color, index: Value, alpha: Value
     return transparent(weight * passes) + Shader((Lobe("ggx", color(weight * returns), alpha, at),))
 
 
-def leaf(diffuse: Shader, base: Color, anisotropy: Value, at: Vector | None) -> Shader:
+def leaf(diffuse: Shader, base: Color, share: Value, anisotropy: Value, at: Vector | None) -> Shader:
     """A sheet of dense, scattering matter: more of its light comes through the higher the anisotropy, -1 … 1, is.
 
-    diffuse: what it would reflect if nothing came through.
+    diffuse: what it would reflect if nothing came through; share: of it, what is scattered.
     """
-    through = clamp(0.5 * (1.0 + anisotropy))
+    through = share * clamp(0.5 * (1.0 + anisotropy))
     return diffuse * (1.0 - through) + translucent(base, at) * through
