@@ -168,6 +168,7 @@ class RenderOptions(TypedDict, total=False):
     transmission_bounces: int | None
     filter_glossy: float
     clamp_indirect: float
+    darken_doubled: bool
     passes: Sequence[str]
     groups: bool
     aovs: bool

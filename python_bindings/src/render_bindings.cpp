@@ -61,6 +61,8 @@ filter_glossy: 0 ... 100, as Cycles' Filter Glossy; 0: none. Light that diffuse 
 clamp_indirect: 0 or more, as Cycles' Clamp Indirect; 0: none. The mean of the channels that what one path brings is cut
     to, of light that has bounced: lamps that a record's rays or the camera's meet through glass or by several mirrors,
     and surfaces that they meet after a bounce. Without it, a lamp that few rays find through glass is a bright spot.
+darken_doubled: whether opaque faces that lie on others are dark, as in Cycles, where its rays meet the other: black if
+    both are in one plane to the last bit, and else with dark patches. RenderReport.doubled tells their meshes in any case.
 passes: names of what else is wanted of the picture, by the units and values of Blender's render engine Cycles.
     Of the ray through a pixel's middle: "depth" [m] along the view axis, 1e10 where nothing is; "position",
     "object_index", "material_index". Means over the filter: "normal", "uv", "mist", "emission", "environment",
@@ -222,11 +224,11 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
                        const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
                        const py::object& max_bounces, const py::object& glossy_bounces,
                        const py::object& transmission_bounces, const py::object& filter_glossy,
-                       const py::object& clamp_indirect, const py::object& passes, const py::object& groups,
-                       const py::object& aovs, const py::object& alpha_threshold, const py::object& mist,
-                       const py::object& cryptomatte_levels, const py::object& exposure, const py::object& threads,
-                       const py::object& seed, const py::object& kept_light, const py::object& progress,
-                       const py::object& on_update) {
+                       const py::object& clamp_indirect, const py::object& darken_doubled, const py::object& passes,
+                       const py::object& groups, const py::object& aovs, const py::object& alpha_threshold,
+                       const py::object& mist, const py::object& cryptomatte_levels, const py::object& exposure,
+                       const py::object& threads, const py::object& seed, const py::object& kept_light,
+                       const py::object& progress, const py::object& on_update) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
     const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
@@ -243,6 +245,7 @@ py::tuple render_scene(const py::object& scene_object, const py::object& width, 
                                bounces_from("transmission_bounces", transmission_bounces),
                                real_from("filter_glossy", filter_glossy),
                                real_from("clamp_indirect", clamp_indirect),
+                               flag_from("darken_doubled", darken_doubled),
                                pass_settings_from(pass_arguments)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
@@ -364,8 +367,8 @@ void bind_render(py::module_& m) {
           "time_limit"_a = py::none(), "pixel_filter"_a = "box", "filter_width"_a = PixelFilter().width,
           "shadows"_a = true, "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8,
           "max_bounces"_a = kDefaultBounces, "glossy_bounces"_a = py::none(), "transmission_bounces"_a = py::none(),
-          "filter_glossy"_a = 0.0, "clamp_indirect"_a = 0.0, "passes"_a = py::tuple(), "groups"_a = false,
-          "aovs"_a = false, "alpha_threshold"_a = PassSettings().alpha_threshold,
+          "filter_glossy"_a = 0.0, "clamp_indirect"_a = 0.0, "darken_doubled"_a = false, "passes"_a = py::tuple(),
+          "groups"_a = false, "aovs"_a = false, "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
           "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "exposure"_a = 1.0, "threads"_a = 0, "seed"_a = 0,
           "kept_light"_a = py::none(), "progress"_a = py::none(), "on_update"_a = py::none());

@@ -222,6 +222,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
         "transmission_bounces": 2,
         "filter_glossy": 1.5,
         "clamp_indirect": 4.0,
+        "darken_doubled": True,
         "threads": 1,
     }
     scene.shlight.order, scene.shlight.use_shadows, scene.render.threads_mode = "AUTO", False, "AUTO"

@@ -60,6 +60,19 @@ def test_faces_that_lie_on_others_are_named(studio: Any) -> None:
     ]
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+def test_faces_that_lie_on_others_are_as_dark_as_in_cycles(studio: Any, turn: float) -> None:
+    """Squares in one plane to the last bit are black; turned ones have patches, half of them dark."""
+    studio.plane()
+    studio.area()
+    studio.camera()
+    corners = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)])
+    for name, offset in (("Large", 0.0), ("Small", 0.5)):
+        at = {"location": (-1, -1, 0.5), "rotation_euler": (turn, turn / 2, 0)}
+        studio.mesh(name, corners * (1 - offset / 2) + (offset / 2, offset / 2, 0), [(0, 1, 2, 3)], **at)
+    studio.compare(mean=1e-3 if turn == 0 else 5e-3, error=1e-3 if turn == 0 else 0.02)
+
+
 @pytest.mark.parametrize("missing", ["library", "texture"])
 def test_what_is_missing_of_a_library(studio: Any, missing: str) -> None:
     """Missing libraries behave as in Cycles: their objects are absent, and their textures magenta."""

@@ -150,6 +150,7 @@ SETTINGS = {
     "transmission_bounces": None,
     "filter_glossy": 1.0,
     "clamp_indirect": 10.0,
+    "darken_doubled": True,
     "passes": ["depth"],
     "groups": True,
     "aovs": True,

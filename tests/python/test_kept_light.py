@@ -160,7 +160,7 @@ def test_a_change_of_the_scene_drops_all_light(change: Callable[[Room], object])
     [
         *({"max_bounces": 3}, {"noise_threshold": 0.04}, {"glossy_bounces": 1}, {"transmission_bounces": 1}),
         *({"seed": 1}, {"shadow_rays": 0}, {"tolerance": 0.02}, {"groups": True}, {"transparent_bounces": 1}),
-        *({"filter_glossy": 1.0}, {"clamp_indirect": 0.1}),
+        *({"filter_glossy": 1.0}, {"clamp_indirect": 0.1}, {"darken_doubled": True}),
     ],
     ids=lambda option: next(iter(option)),
 )

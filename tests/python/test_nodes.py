@@ -146,6 +146,18 @@ def test_light_that_passes_through() -> None:
     )
 
 
+def test_the_surface_behind_the_last_that_light_passes_shines() -> None:
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=float)
+    scene = shlight.Scene()
+    green, red = (0.5, 1.0, 0.5), (1.0, 0.5, 0.5)
+    for height, bsdf in ((0, nodes.emission((1, 2, 3))), (1, nodes.transparent(green)), (2, nodes.transparent(red))):
+        scene.add_mesh(square * 3 + (0, 0, height), [[0, 1, 2], [0, 2, 3]], bsdf=bsdf)
+    scene.set_camera(shlight.look_at((0, 0, 5), (0, 0, 0), up=(0, 1, 0)), fov_x=0.5)
+    for passed, expected in ((0, (0, 0, 0)), (1, (0.5, 1.0, 0.75)), (2, (0.5, 1.0, 0.75))):
+        image = shlight.render(scene, 4, 4, max_samples=1, max_bounces=0, transparent_bounces=passed)
+        np.testing.assert_allclose(image[..., :3], np.broadcast_to(expected, (4, 4, 3)), rtol=1e-6)
+
+
 def test_a_cut_out_picture_is_as_bright_from_afar() -> None:
     """Leaves whose picture is black where there is no leaf."""
     is_leaf = np.random.default_rng(4).uniform(size=(64, 64, 1)) < 0.25

@@ -201,6 +201,19 @@ def test_the_picture_as_it_stands() -> None:
         shlight.render(lit_floor(), 48, 32, on_update=lambda image, report: 1 / 0, max_bounces=0)
 
 
+def test_doubled_faces_are_dark_where_they_are_asked_to_be() -> None:
+    scene = lit_floor()
+    lit = shlight.render(scene, 48, 32, max_bounces=0)
+    assert lit.report.doubled == []
+    scene.add_mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    again = shlight.render(scene, 48, 32, max_bounces=0)
+    assert len(again.report.doubled) == 2
+    np.testing.assert_allclose(again, lit, rtol=1e-5)
+    dark = shlight.render(scene, 48, 32, max_bounces=0, darken_doubled=True)
+    assert dark.report.doubled == again.report.doubled
+    assert np.asarray(dark)[16, 24, :3].max() == 0 < np.asarray(lit)[16, 24, :3].min()
+
+
 def test_no_time_is_left_in_the_end() -> None:
     left: list[float] = []
 

@@ -378,7 +378,7 @@ class SceneMeshes:
         labels = {use.mesh.index: use.labels for use in self._kept.values() if use.mesh is not None}
         for mesh, instance in doubled:
             place = f"Object '{labels[mesh][instance].name}'"
-            report.add(place, "some of its faces lie on others, which Cycles draws black or with dark patches")
+            report.add(place, "some of its faces lie on others; they are black or have dark patches, as in Cycles")
 
 
 def _place_of(shown: Any) -> str:

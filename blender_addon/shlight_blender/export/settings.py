@@ -49,6 +49,7 @@ def render_settings(scene: Any) -> dict[str, Any]:
         "transmission_bounces": int(settings.transmission_bounces),
         "filter_glossy": filter_glossy(scene),
         "clamp_indirect": float(getattr(cycles, "sample_clamp_indirect", 10.0)),
+        "darken_doubled": True,
         "exposure": float(getattr(cycles, "film_exposure", 1.0)),
         "threads": int(render.threads) if render.threads_mode == "FIXED" else 0,
     }

@@ -55,6 +55,7 @@ class SceneRays {
     void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const;
     /// Adds what RayTracer::near() finds of all surfaces.
     void near(const Vec3f& point, float radius, std::vector<RayHit>& found) const;
+    void near_opaque(const Vec3f& point, float radius, std::vector<RayHit>& found) const;
     /// The share of light that reaches the end of each ray. transparent_bounces: surfaces that a ray passes through, at
     /// most.
     void visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "film/doubled_faces.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
-#include <set>
 
 #include "film/pilot.h"
 #include "shlight/scene_rays.h"
+#include "surfaces/doubled_faces.h"
 #include "surfaces/placed_meshes.h"
 
 namespace shlight {
@@ -17,13 +18,9 @@ constexpr int kMostPixelsOfRow = 64;
 
 }  // namespace
 
-std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& stopped) {
+std::vector<bool> find_doubled(const Picture& picture, const Stopped& stopped) {
     const SceneRays& rays = picture.scene->rays();
     const PlacedMeshes& placed = picture.scene->placed();
-    const auto instance_of = [&](const RayHit& hit) -> MeshInstance {
-        const Placement& own = placed.placements()[hit.instance];
-        return {picture.scene->mesh_numbers()[own.mesh], own.number};
-    };
     std::vector<Ray> seen;
     for (const Pixel& pixel : spread_pixels(picture, 1, kMostPixelsOfRow)) {
         seen.push_back(picture.ray(pixel.column + 0.5, pixel.row + 0.5, std::nullopt));
@@ -31,7 +28,7 @@ std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& st
     }
     std::vector<RayHit> hits(seen.size());
     rays.intersect(seen, hits);
-    std::set<MeshInstance> found;
+    std::vector<bool> found;
     std::vector<RayHit> near;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         end_if(stopped);
@@ -43,12 +40,25 @@ std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& st
         near.clear();
         rays.near(Vec3f(point.position), static_cast<float>(2 * point.error), near);
         for (const RayHit& other : near) {
-            if ((other.instance != hit.instance || other.triangle != hit.triangle) && placed.covers(other, point)) {
-                found.insert({instance_of(hit), instance_of(other)});
+            if ((other.instance != hit.instance || other.triangle != hit.triangle) && covers(placed, other, point)) {
+                found.resize(placed.placements().size());
+                found[hit.instance] = found[other.instance] = true;
             }
         }
     }
-    return {found.begin(), found.end()};
+    return found;
+}
+
+std::vector<MeshInstance> instances_of(const CompiledScene& scene, const std::vector<bool>& placements) {
+    std::vector<MeshInstance> instances;
+    for (std::size_t i = 0; i < placements.size(); ++i) {
+        if (placements[i]) {
+            const Placement& own = scene.placed().placements()[i];
+            instances.push_back({scene.mesh_numbers()[own.mesh], own.number});
+        }
+    }
+    std::ranges::sort(instances);
+    return instances;
 }
 
 }  // namespace shlight

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Faces that lie on others. Rays that begin on one of them in float meet the other or miss it, as rounding has it.
+// The faces of a picture that lie on others, see surfaces/doubled_faces.h.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,10 @@
 
 namespace shlight {
 
-/// RenderReport::doubled, from camera rays through a grid of pixels.
-std::vector<MeshInstance> find_doubled(const Picture& picture, const Stopped& stopped);
+/// The number of placements, whether some of their faces do, by camera rays through a grid of pixels; empty if none do.
+std::vector<bool> find_doubled(const Picture& picture, const Stopped& stopped);
+
+/// The same placements as RenderReport::doubled lists them.
+std::vector<MeshInstance> instances_of(const CompiledScene& scene, const std::vector<bool>& placements);
 
 }  // namespace shlight

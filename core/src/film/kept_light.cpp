@@ -23,7 +23,7 @@ auto settings_of(const Picture& picture) {
     const RenderSettings& own = picture.settings;
     return std::tuple(own.order, own.tolerance, own.sampling.noise_threshold, own.shadow_rays > 0, own.seed,
                       own.transparent_bounces, own.max_bounces, own.glossy_bounces, own.transmission_bounces,
-                      own.filter_glossy, own.clamp_indirect, picture.stored_parts());
+                      own.filter_glossy, own.clamp_indirect, own.darken_doubled, picture.stored_parts());
 }
 
 StoredLight no_light(const Picture& picture) {

@@ -189,7 +189,8 @@ PathSettings Picture::paths(const StoredLight* stored) const {
             true,
             settings.filter_glossy,
             filtered_width(),
-            static_cast<float>(settings.clamp_indirect)};
+            static_cast<float>(settings.clamp_indirect),
+            settings.darken_doubled && !doubled.empty() ? &doubled : nullptr};
 }
 
 PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)

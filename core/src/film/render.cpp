@@ -104,20 +104,19 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     std::optional<Picture> picture;
     std::optional<LightLoan> light;
     std::optional<ProgressiveRenderer> renderer;
-    std::vector<MeshInstance> doubled;
     std::atomic<bool> is_prepared = false;
     const auto work = [&](const Watch& caller) {
         Refinement refinement(width, height, settings.sampling, camera.has_depth_of_field());
         picture.emplace(scene, camera, width, height, settings, pixel_points(refinement, settings.seed),
                         refinement.has_preview() ? 1 : 0, caller.stopped);
         look_ahead(*picture, caller.stopped);
+        picture->doubled = find_doubled(*picture, caller.stopped);
         light.emplace(kept, *picture);
         std::fill(image.begin(), image.end(), 0.0F);
         std::fill(passes.begin(), passes.end(), 0.0F);
         renderer.emplace(*picture, std::move(refinement), light->light(), image, passes, watch, start);
         is_prepared = true;
         renderer->run(caller);
-        doubled = find_doubled(*picture, caller.stopped);
     };
     const auto look = [&] { return is_prepared ? renderer->look() : !watch.progress || watch.progress(0); };
     const bool is_watched = watch.progress || watch.on_update;
@@ -126,7 +125,7 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
         throw RenderCancelled();
     }
     RenderReport report = renderer->report();
-    report.doubled = std::move(doubled);
+    report.doubled = instances_of(scene, picture->doubled);
     return report;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lobes/refraction.h"
+#include "surfaces/doubled_faces.h"
 
 namespace shlight {
 namespace {
@@ -103,12 +104,12 @@ void CameraSurfaces::meet(const Sink& sink) {
             const double reach = std::isinf(segment.density) ? 0.0 : 2 * point.error;
             add_lamps(viewer, segment, parts_[i], distance + reach, sink);
         }
-        Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
+        Surface end = {segment, met_[i], point, -direction, distance, is_covered(met_[i], point, -direction), 0, 0};
         if (segment.source == RaySource::camera && scene_->placed().is_holdout(met_[i])) {
             end.source = RaySource::held_out;
         }
         absorb(end, distance - double{parts_[i].t_min});
-        if (segment.is_broad && is_shaded(segment) && add_cell(end, sink)) {
+        if (segment.is_broad && reflects(end) && add_cell(end, sink)) {
             add_emission(end, sink);
         } else {
             surfaces_.push_back(end);
@@ -116,6 +117,24 @@ void CameraSurfaces::meet(const Sink& sink) {
     }
     segments_.clear();
     parts_.clear();
+}
+
+bool CameraSurfaces::is_covered(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer) {
+    const PlacedMeshes& placed = scene_->placed();
+    if (settings_.doubled == nullptr || !(*settings_.doubled)[hit.instance] || !placed.is_triangle(hit)) {
+        return false;
+    }
+    near_.clear();
+    scene_->rays().near_opaque(Vec3f(point.position), static_cast<float>(2 * point.error), near_);
+    const auto is_interface = [&](const RayHit& face) {
+        const std::uint32_t material = placed.surface(face, Vec3f(-towards_viewer)).material;
+        const SurfaceShader* shader = scene_->materials()[material].shader.get();
+        return shader != nullptr && !shader->refractions.empty();
+    };
+    return std::ranges::any_of(near_, [&](const RayHit& face) {
+        return (face.instance != hit.instance || face.triangle != hit.triangle) && covers(placed, face, point) &&
+               stops(placed, face, hit, towards_viewer) && !is_interface(face);
+    });
 }
 
 /// Neighbours of other rays than the camera's are unknown; places near by, and the directions to them, are Cycles'.
@@ -187,7 +206,7 @@ void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std
         if (surfaces_[i].exit_lobe && !shader->lobes[*surfaces_[i].exit_lobe].normal) {
             continue;  // nothing of it is needed
         }
-        if (shader != nullptr && (is_shaded(surfaces_[i]) || shader->transparency)) {
+        if (shader != nullptr && (is_shaded(surfaces_[i]) || shader->transparency || shader->emission)) {
             order_.push_back(static_cast<std::uint32_t>(i));
         }
     }
@@ -273,7 +292,7 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
         }
         if (surface.source == RaySource::held_out) {
             leave_empty(surface, surface.throughput - throughput, sink);
-        } else if (is_shaded(surface)) {
+        } else if (reflects(surface)) {
             reflect(surface, sink);
         }
     }
@@ -288,7 +307,7 @@ void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     hit_paths_.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    std::erase_if(order_, [&](std::uint32_t i) { return !is_shaded(surfaces_[i]); });
+    std::erase_if(order_, [&](std::uint32_t i) { return !reflects(surfaces_[i]); });
     const auto ray_of = [&](std::uint32_t i) { return surfaces_[i].ray; };
     if (!std::ranges::is_sorted(order_, {}, ray_of)) {
         std::ranges::stable_sort(order_, {}, ray_of);

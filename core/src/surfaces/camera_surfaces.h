@@ -57,6 +57,8 @@ struct PathSettings {
     double filter_glossy = 0;                            ///< see RenderSettings
     double least_width = 0;    ///< of lobes of microfacets that vary and that are met by a filtered path
     float clamp_indirect = 0;  ///< see RenderSettings
+    /// A flag for each placement: its faces are dark where they lie on others. Outlives this; null: none are.
+    const std::vector<bool>* doubled = nullptr;
 
     /// The share that is left of light that has bounced.
     float kept(const Rgb& light) const {
@@ -185,6 +187,7 @@ class CameraSurfaces {
         SurfacePoint point;
         Vec3d towards_viewer;
         double distance;      ///< from the origin of the whole ray
+        bool is_covered;      ///< light that it reflects is stopped by a face that lies on it
         std::size_t results;  ///< of its program: where the first is
         std::size_t stride;   ///< and from result to result
 
@@ -266,6 +269,7 @@ class CameraSurfaces {
     float kept(const Segment& segment, const Rgb& radiance) const {
         return segment.emitted_bounces() > 0 ? settings_.kept(radiance / segment.chance) : 1.0F;
     }
+    bool is_covered(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
     PlacesBeside places_beside(const SurfacePlace& place, const Surface& surface, const NeighbourRays& neighbours,
@@ -277,6 +281,7 @@ class CameraSurfaces {
                segment.glossy <= settings_.glossy_bounces && segment.transmissions <= settings_.transmission_bounces &&
                segment.depth <= settings_.transparent_bounces;
     }
+    bool reflects(const Surface& surface) const { return is_shaded(surface) && !surface.is_covered; }
     /// A ray through a body, of which all hits are places near a surface.
     struct SubsurfaceProbe {
         std::size_t surface;
@@ -368,7 +373,7 @@ class CameraSurfaces {
     std::vector<Ray> parts_;     // of each segment's ray, what is left
     std::vector<Rgb> by_group_;  // of lamps along a ray
     std::vector<SurfaceLobe> lobes_;
-    std::vector<RayHit> met_;
+    std::vector<RayHit> met_, near_;
     std::vector<Surface> surfaces_;
     std::vector<SubsurfaceWalk> walks_;
     std::vector<SubsurfaceProbe> probes_;

@@ -61,11 +61,6 @@ Vec3d between(std::array<Vec3d, 3> normals, const std::array<double, 3>& weights
     return weighted(normals, weights);
 }
 
-/// Cosine between the normals of surfaces that lie on each other.
-constexpr double kParallel = 1 - 1e-6;
-/// Distance from a triangle's edges at which a point is inside ÷ the point's error.
-constexpr double kClearOfEdges = 4;
-
 /// Numbers of matrices are counted row by row; the last column holds the translation.
 constexpr int kTranslation = 3;
 
@@ -96,7 +91,7 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
 }
 
 double PlacedMeshes::height(const RayHit& hit, std::size_t corner) const {
-    if (mesh_of(placements_[hit.instance]).shape->form != SurfaceForm::triangles) {
+    if (!is_triangle(hit)) {
         return 0;
     }
     const std::array<Vec3d, 3> at = corners(hit);
@@ -118,24 +113,6 @@ std::optional<std::array<Vec3d, 3>> PlacedMeshes::corner_normals(const RayHit& h
                                               : mesh.corner_normals[3 * std::size_t{hit.triangle} + corner]);
     }
     return normals;
-}
-
-bool PlacedMeshes::covers(const RayHit& triangle, const SurfacePoint& point) const {
-    if (mesh_of(placements_[triangle.instance]).shape->form != SurfaceForm::triangles) {
-        return false;
-    }
-    const std::array<Vec3d, 3> at = corners(triangle);
-    const Vec3d normal = normalized_or(glm::cross(at[1] - at[0], at[2] - at[0]), Vec3d(0));
-    if (!(std::abs(glm::dot(normal, point.geometric_normal)) > kParallel &&
-          std::abs(glm::dot(normal, point.position - at[0])) <= point.error)) {
-        return false;
-    }
-    std::array<double, 3> distances{};  // from the edges, inwards
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3d edge = at[(i + 1) % 3] - at[i];
-        distances[i] = glm::dot(glm::cross(normal, edge), point.position - at[i]) / glm::length(edge);
-    }
-    return std::ranges::min(distances) > kClearOfEdges * point.error;
 }
 
 Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point) const {
@@ -398,7 +375,7 @@ double PlacedMeshes::to_object_number(const Placement& placement, std::uint32_t 
 }
 
 bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const {
-    if (mesh_of(placements_[hit.instance]).shape->form != SurfaceForm::triangles) {
+    if (!is_triangle(hit)) {
         return false;
     }
     const std::array<Vec3d, 3> corners = this->corners(hit);

@@ -82,6 +82,7 @@ class PlacedMeshes {
   public:
     /// The origin of the frame in which everything stands, for programs, which read the world's.
     void set_origin(const Vec3d& origin) { origin_ = origin; }
+    const Vec3d& origin() const { return origin_; }
     /// first_material: number of the mesh's first material in the scene.
     void add(std::shared_ptr<const CompiledMesh> mesh, std::uint32_t first_material);
 
@@ -100,8 +101,12 @@ class PlacedMeshes {
     const Label& label(const RayHit& hit) const;
     /// MeshUse::is_holdout of what was hit.
     bool is_holdout(const RayHit& hit) const { return mesh_of(placements_[hit.instance]).is_holdout; }
-    /// Whether a triangle lies on a point of another surface, within the error of that point; its edges do not count.
-    bool covers(const RayHit& triangle, const SurfacePoint& point) const;
+    /// Whether triangles were hit, and no curve or sphere.
+    bool is_triangle(const RayHit& hit) const {
+        return mesh_of(placements_[hit.instance]).shape->form == SurfaceForm::triangles;
+    }
+    /// Corners of the hit triangle, in the frame in which everything stands.
+    std::array<Vec3d, 3> corners(const RayHit& hit) const;
     /// Whether the viewer sees the mesh's back.
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     /// The radiance that the material emits to the side of the viewer.
@@ -125,8 +130,6 @@ class PlacedMeshes {
     std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
     /// surface() of curves and spheres.
     SurfacePoint round_surface(const RayHit& hit, const Vec3f& direction) const;
-    /// Corners of the hit triangle in the world.
-    std::array<Vec3d, 3> corners(const RayHit& hit) const;
     /// How far a corner of the hit triangle is from the edge opposite to it, in the world.
     double height(const RayHit& hit, std::size_t corner) const;
     /// ∂P/∂u up to its length, of curves the way along them; 0 where u and v do not say.

@@ -44,7 +44,7 @@ Rgb burley_profile(const Rgb& inverse, double radius) {
 void CameraSurfaces::enter_bodies(std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
         const SurfaceShader* shader = scene_->materials()[surfaces_[i].point.material].shader.get();
-        if (shader == nullptr || !is_shaded(surfaces_[i]) || surfaces_[i].diffused || surfaces_[i].exit_lobe) {
+        if (shader == nullptr || !reflects(surfaces_[i]) || surfaces_[i].diffused || surfaces_[i].exit_lobe) {
             continue;
         }
         for (std::uint32_t lobe = 0; lobe < shader->lobes.size(); ++lobe) {

@@ -77,8 +77,15 @@ void SceneRays::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
 }
 
 void SceneRays::near(const Vec3f& point, float radius, std::vector<RayHit>& found) const {
-    for (const auto& tracer : {opaque_, transparent_}) {
-        if (tracer != nullptr) tracer->near(point, radius, found);
+    near_opaque(point, radius, found);
+    if (transparent_ != nullptr) {
+        transparent_->near(point, radius, found);
+    }
+}
+
+void SceneRays::near_opaque(const Vec3f& point, float radius, std::vector<RayHit>& found) const {
+    if (opaque_ != nullptr) {
+        opaque_->near(point, radius, found);
     }
 }
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "surfaces/doubled_faces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <glm/geometric.hpp>
+
+#include "surfaces/round_places.h"
+
+namespace shlight {
+namespace {
+
+/// Cosine between the normals of surfaces that lie on each other.
+constexpr double kParallel = 1 - 1e-6;
+/// Distance from a triangle's edges at which a point is inside ÷ the point's error.
+constexpr double kClearOfEdges = 4;
+
+/// As Cycles has them: in float, in the frame of the world.
+std::array<Vec3f, 3> corners_in_float(const PlacedMeshes& placed, const RayHit& hit) {
+    std::array<Vec3f, 3> rounded;
+    std::ranges::transform(placed.corners(hit), rounded.begin(),
+                           [&](const Vec3d& corner) { return Vec3f(corner + placed.origin()); });
+    return rounded;
+}
+
+/// The normal of a triangle by its edges a, b and c as Embree rounds it: each component by the pair of edges whose
+/// products are smaller.
+Vec3f stable_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+    const Vec3f first = glm::cross(a, b);
+    const Vec3f second = glm::cross(b, c);
+    const Vec3f first_size = glm::abs(Vec3f(a.z * b.y, a.x * b.z, a.y * b.x));
+    const Vec3f second_size = glm::abs(Vec3f(b.z * c.y, b.x * c.z, b.y * c.x));
+    return glm::mix(second, first, glm::lessThan(first_size, second_size));
+}
+
+}  // namespace
+
+bool covers(const PlacedMeshes& placed, const RayHit& face, const SurfacePoint& point) {
+    if (!placed.is_triangle(face)) {
+        return false;
+    }
+    const std::array<Vec3d, 3> at = placed.corners(face);
+    const Vec3d normal = normalized_or(glm::cross(at[1] - at[0], at[2] - at[0]), Vec3d(0));
+    if (!(std::abs(glm::dot(normal, point.geometric_normal)) > kParallel &&
+          std::abs(glm::dot(normal, point.position - at[0])) <= point.error)) {
+        return false;
+    }
+    std::array<double, 3> distances{};  // from the edges, inwards
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d edge = at[(i + 1) % 3] - at[i];
+        distances[i] = glm::dot(glm::cross(normal, edge), point.position - at[i]) / glm::length(edge);
+    }
+    return std::ranges::min(distances) > kClearOfEdges * point.error;
+}
+
+bool stops(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const Vec3d& way) {
+    const auto [a, b, c] = corners_in_float(placed, hit);
+    const Vec3f begin = a + hit.u * (b - a) + hit.v * (c - a);
+    std::array<Vec3f, 3> corners = corners_in_float(placed, face);
+    for (Vec3f& corner : corners) {
+        corner -= begin;
+    }
+    const Vec3f normal = stable_normal(corners[2] - corners[0], corners[0] - corners[1], corners[1] - corners[2]);
+    const float height = glm::dot(corners[0], normal);  // of the face above where the ray begins
+    return glm::dot(Vec3d(normal), way) > 0 ? height >= 0 : height <= 0;
+}
+
+}  // namespace shlight

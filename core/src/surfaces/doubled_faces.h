@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// Faces that lie on others. Rays that begin on one of them in float meet the other or miss it, as rounding has it.
+#pragma once
+
+#include "shlight/ray_tracer.h"
+#include "shlight/surface_point.h"
+#include "shlight/types.h"
+#include "surfaces/placed_meshes.h"
+
+namespace shlight {
+
+/// Whether a face lies on a point of another surface, within the error of that point; its edges do not count.
+bool covers(const PlacedMeshes& placed, const RayHit& face, const SurfacePoint& point);
+
+/// Whether rays of Cycles that leave a hit to the side of `way` meet a face that covers it: they begin at the hit's
+/// place in float, and meet what is there at the distance 0. Precondition: triangles.
+bool stops(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const Vec3d& way);
+
+}  // namespace shlight
