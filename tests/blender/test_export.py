@@ -74,6 +74,9 @@ def test_broken_objects_do_no_harm(studio: Any) -> None:
     studio.mesh("Nothing", [], [])
     studio.mesh("Points", [(0, 0, 0), (1, 0, 0)], [])
     studio.mesh("Nowhere", [(nan, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    with_a_face = [(nan, 0, 0), (1, 0, -1), (0, 1, -1), (-1, -1, -1), (2, 2, 1e12)]
+    lower = studio.mesh("Below the floor", with_a_face, [(1, 2, 3), (0, 1, 2), (1, 2, 4)])
+    lower.data.polygons.foreach_set("use_smooth", [True] * 3)
     studio.box(location=(nan, 0, 0), name="Lost")
     studio.box(scale=(0, 0, 0), location=(0, 0, 1), name="Point")
     studio.box(scale=(0, 0, 1), location=(0, 0, 1), name="Line")
@@ -82,7 +85,7 @@ def test_broken_objects_do_no_harm(studio: Any) -> None:
     studio.lamp("AREA", 10.0, (0, 0, 3), scale=(0, 1, 1))
     studio.lamp("POINT", 10.0, (nan, 0, 3))
     text = "\n".join(messages())
-    assert "Object 'Nowhere': some of its vertices are not finite; left out" in text
+    assert "Object 'Nowhere', Object 'Below the floor': some of its vertices are not finite, or" in text
     assert "Object 'Lost': its transform is not finite; left out" in text
     assert "its area is 0" in text
     assert "its power or its transform is not finite" in text

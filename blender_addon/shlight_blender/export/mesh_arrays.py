@@ -33,6 +33,7 @@ Integers = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.float32]
 
 SAME = 1e-5  # differences of normals that are rounding errors
+FARTHEST = 1e9  # [m] coordinates of meshes; the core refuses ten times as much
 
 
 class Joined(NamedTuple):
@@ -131,6 +132,16 @@ class MeshArrays:
         normals = self.normals
         return normals[self.triangles] if normals is not None and normals.ndim == 2 else normals
 
+    def within_reach(self) -> MeshArrays | None:
+        """The triangles whose coordinates are at most `FARTHEST`; None if there are none."""
+        known = (np.abs(self.vertices) <= FARTHEST).all(1)
+        kept = known[self.triangles].all(1)
+        if not kept.any():
+            return None
+        arrays = self.chosen(kept, self.material_indices)
+        before = None if self.before is None else self.before._replace(smooth=self.before.smooth[kept])
+        return replace(arrays, vertices=np.where(known[:, None], self.vertices, np.float32(0)), before=before)
+
     def chosen(self, which: NDArray[Any], slots: NDArray[Any]) -> MeshArrays:
         """Some of the triangles, by number or by whether each is one, with the materials `slots` (k,) of all."""
         normals = None if self.corner_normals is None else self.corner_normals[which]
@@ -159,9 +170,11 @@ def object_arrays(
         mesh_object.to_mesh_clear()
     if arrays is None:
         return None
-    if not np.isfinite(arrays.vertices).all():
-        report.add(place, "some of its vertices are not finite; left out", Effect.THING)
-        return None
+    if not (np.abs(arrays.vertices) <= FARTHEST).all():
+        text = "some of its vertices are not finite, or farther than 1e9 m away; their faces are left out"
+        report.add(place, text, Effect.THING)
+        if (arrays := arrays.within_reach()) is None:
+            return None
     if arrays.normals is not None and not np.isfinite(arrays.normals).all():
         arrays.normals = None
     return arrays
