@@ -21,7 +21,7 @@ constexpr std::size_t kFirstRecords = 8;
 /// Rays that share shadow rays, and those that are shaded at once.
 constexpr std::size_t kGroupRays = 8;
 constexpr std::size_t kShadedAtOnce = 32 * kGroupRays;
-/// Places of a cell that are shaded, at least, and times the root of the number of rays that end there.
+/// Rays that are shaded for a cell, at least, and times the root of the number of those that end there.
 constexpr std::size_t kLeastSamples = 2;
 constexpr double kSamplesPerRoot = 2;
 /// The share of a ray's light that surfaces are taken to reflect where that is clamped. A record lights surfaces of any
@@ -105,7 +105,7 @@ void RecordGatherer::gather(std::span<const Place> places, std::size_t rays_acro
             const std::size_t rays = i * rays_per_record_;
             finished[i] = records_[i].record(std::span(distances_).subspan(rays, rays_per_record_),
                                              std::span(light_).subspan(rays, rays_per_record_), light_count_,
-                                             paths_.stored->parts);
+                                             paths_.stored->parts, places[first + i].reach);
             finished[i].cell = places[first + i].cell;
         });
         std::ranges::move(finished, std::back_inserter(made));
@@ -150,15 +150,14 @@ void RecordGatherer::find_cells() {
         const bool is_own = ends_[first].is_own;
         const LightCells::Known known = is_own ? LightCells::Known() : known_->known(ends_[first].cell);
         const std::size_t wanted = is_own ? 1 : wanted_samples(known.rays + last - first);
-        const std::size_t shaded = wanted - std::min(known.samples, wanted);
+        const std::size_t shaded = std::min(wanted - std::min(known.samples, wanted), last - first);
         if (!is_own || !was_own) {
             fill_group();
         }
         was_own = is_own;
         cells_.push_back({first, last - first, shaded_.size(), shaded});
         for (std::size_t i = 0; i < shaded; ++i) {
-            shaded_.push_back({static_cast<std::uint32_t>(first + i % (last - first)),
-                               static_cast<std::uint32_t>(known.samples + i)});
+            shaded_.push_back({static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(known.samples + i)});
         }
         first = last;
     }
@@ -173,20 +172,8 @@ Ray RecordGatherer::ray_of(const Shaded& shaded) const {
     if (shaded.end == kNone) {
         return {Vec3f(0), 0, Vec3f(0), -1};
     }
-    const End& end = ends_[shaded.end];
-    const Ray& ray = records_[end.ray / rays_per_record_].rays()[end.ray % rays_per_record_];
-    if (end.is_own) {
-        return ray;
-    }
-    RayHit hit;
-    scene_->rays().intersect({&ray, 1}, {&hit, 1});
-    if (hit.missed()) {  // rays that were traced together have met an edge otherwise
-        return ray;
-    }
-    const SurfacePoint point = scene_->placed().surface(hit, ray.direction);
-    return known_
-        ->sample(end.cell, point, ray.direction, distances_[end.ray], hash(seed_of(end.cell), 0), shaded.number)
-        .value_or(ray);
+    const std::size_t ray = ends_[shaded.end].ray;
+    return records_[ray / rays_per_record_].rays()[ray % rays_per_record_];
 }
 
 /// Shades some groups, from the ray `first` on.

@@ -41,6 +41,7 @@ class RecordGatherer {
     struct Place {
         SurfacePoint surface;
         WorldCell cell;  ///< that the record stands for
+        double reach;    ///< see RecordRays::record()
     };
 
     /// A record at each place by rays_across² rays, or at as many of the first as there is time for; seed: of them all;
@@ -69,7 +70,7 @@ class RecordGatherer {
     /// A ray that is shaded.
     struct Shaded {
         std::uint32_t end;     // a ray's that it tells of; kNone: there is no ray, and its group has no more
-        std::uint32_t number;  // of the cell's places
+        std::uint32_t number;  // of the cell's samples
     };
     /// Shades rays; one per thread.
     struct Shader {

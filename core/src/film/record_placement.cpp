@@ -21,6 +21,8 @@ constexpr double kReach = 0.5;
 /// Radius of a record ÷ the edge of its cell.
 constexpr double kLeastSteps = 0.75;
 constexpr double kMostSteps = 2.5;
+/// RecordRays::record()'s reach ÷ the edge of the record's cell.
+constexpr double kGradientSteps = 1.5;
 /// Radius of a record that was found wrong farther away ÷ the width of a pixel, at least.
 constexpr double kLeastPixels = 1.5;
 /// Least cosine of the view by which a pixel's width grows on a surface.
@@ -240,7 +242,7 @@ std::optional<RecordPlacement::Wanted> RecordPlacement::wanted(std::span<const S
             return std::nullopt;
         }
     }
-    return Wanted{{point, cell}, level, allowed};
+    return Wanted{{point, cell, kGradientSteps * std::ldexp(1.0, level)}, level, allowed};
 }
 
 void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {

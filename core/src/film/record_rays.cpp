@@ -58,7 +58,7 @@ RecordRays::RecordRays(const SurfacePoint& surface, std::size_t across, std::uin
 }
 
 LightRecord RecordRays::record(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t count,
-                               std::size_t parts) const {
+                               std::size_t parts, double reach) const {
     LightRecord record;
     record.position = position_;
     record.normal = z_;
@@ -69,7 +69,7 @@ LightRecord RecordRays::record(std::span<const double> distances, std::span<cons
     record.gradient.assign(count, {Rgb(0), Rgb(0), Rgb(0)});
     find_free(distances, record);
     add_up(light, parts, record);
-    find_gradients(distances, light, parts, record);
+    find_gradients(distances, light, parts, reach, record);
     return record;
 }
 
@@ -86,11 +86,11 @@ void RecordRays::find_free(std::span<const double> distances, LightRecord& recor
 }
 
 void RecordRays::find_gradients(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t parts,
-                                LightRecord& record) const {
+                                double reach, LightRecord& record) const {
     const auto across = static_cast<double>(across_);
     const std::size_t count = record.gradient.size();
     const auto add = [&](std::size_t one, std::size_t other, const Vec3d& way, double factor) {
-        const double rate = factor / std::min(distances[one], distances[other]) / std::numbers::pi;
+        const double rate = factor / std::max(std::min(distances[one], distances[other]), reach) / std::numbers::pi;
         for (std::size_t part = 0; part < parts && rate != 0; ++part) {
             Rgb difference(0);
             for (std::size_t k = part; k < count; k += parts) {

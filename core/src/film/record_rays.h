@@ -24,16 +24,18 @@ class RecordRays {
     /// Row by row of the grid; a ray that would begin inside the surface is empty.
     std::span<const Ray> rays() const { return rays_; }
     /// distances: that the rays go; light: of each ray, as StoredLight has it: `count` numbers. The record's radius is
-    /// the harmonic mean of the distances.
+    /// the harmonic mean of the distances. reach [m]: surfaces that are nearer change what is reflected as slowly as
+    /// those at this distance. A grid of directions is too coarse to tell where a surface ends that begins at the
+    /// record.
     LightRecord record(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t count,
-                       std::size_t parts) const;
+                       std::size_t parts, double reach) const;
 
   private:
     void find_free(std::span<const double> distances, LightRecord& record) const;
     /// How what a white diffuse surface reflects changes along the axes of the world, by the light of cells of the
     /// grid that are side by side (Ward & Heckbert 1992, "Irradiance Gradients").
     void find_gradients(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t parts,
-                        LightRecord& record) const;
+                        double reach, LightRecord& record) const;
     void add_up(std::span<const Rgb* const> light, std::size_t parts, LightRecord& record) const;
 
     std::size_t across_ = 0;

@@ -12,10 +12,6 @@ namespace {
 /// Edge of a cell ÷ the length of the rays that end there: at most this, at least half.
 constexpr double kCellWidth = 0.177;
 
-/// Places in a cell that are tried for one, and the numbers that places have, about.
-constexpr std::uint32_t kTrials = 4;
-constexpr std::uint32_t kMostNumbers = 1024;
-
 /// Memory of a cell beside itself.
 constexpr std::size_t kNodeBytes = 32;
 
@@ -66,20 +62,6 @@ bool LightCells::find(const SurfacePoint& end, const Vec3f& direction, double le
     const std::uint32_t view = look == Look::by_view ? 1 + signs(direction) : 0;
     key = lattice_.cell(end, level(end, length), view);
     return look != Look::sharp;
-}
-
-std::optional<Ray> LightCells::sample(const WorldCell& key, const SurfacePoint& end, const Vec3f& direction,
-                                      double length, std::uint32_t seed, std::uint32_t number) const {
-    const int own = level(end, length);
-    const SobolSequence places(seed);
-    for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-        const auto found = lattice_.surface(end, own, places.point(number + trial * kMostNumbers));
-        if (found && lattice_.cell(*found, own).place == key.place) {
-            const bool is_alike = looks_[end.material] == Look::everywhere_alike;
-            return WorldLattice::ray_to(*found, own, is_alike ? -found->geometric_normal : Vec3d(direction));
-        }
-    }
-    return std::nullopt;
 }
 
 void LightCells::add(const WorldCell& key, std::span<const Rgb> light, const Known& further) {

@@ -38,10 +38,6 @@ class LightCells {
     bool find(const SurfacePoint& end, const Vec3f& direction, double length, WorldCell& key) const;
     /// Whether rays from diffuse surfaces see a material otherwise than others do.
     bool is_filtered(std::uint32_t material) const { return is_filtered_[material] != 0; }
-    /// A ray that tells of a cell what the ray tells that `end` and `direction` are of: it meets the cell in a place of
-    /// its own, by the number. None if the surface is not that wide.
-    std::optional<Ray> sample(const WorldCell& key, const SurfacePoint& end, const Vec3f& direction, double length,
-                              std::uint32_t seed, std::uint32_t number) const;
     /// How well a cell is known.
     struct Known {
         std::size_t samples = 0;  ///< of its light

@@ -105,8 +105,4 @@ std::optional<SurfacePoint> WorldLattice::surface(const SurfacePoint& point, int
     return found && hit.missed() ? found : std::nullopt;
 }
 
-Ray WorldLattice::ray_to(const SurfacePoint& point, int level, const Vec3d& direction) {
-    return {Vec3f(point.off_surface() - kAbove * std::ldexp(1.0, level) * direction), 0, Vec3f(direction)};
-}
-
 }  // namespace shlight

@@ -46,8 +46,6 @@ class WorldLattice {
     /// is turned to: the same for all points near it. None if that is another surface, or is hidden from the point.
     /// place: across the column, of its width; the middle is 0.5.
     std::optional<SurfacePoint> surface(const SurfacePoint& point, int level, const glm::dvec2& place) const;
-    /// A ray to a surface that this has found, from a way before it that is free.
-    static Ray ray_to(const SurfacePoint& point, int level, const Vec3d& direction);
 
   private:
     glm::i64vec3 corner(const SurfacePoint& point, int level) const;
