@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -71,6 +72,15 @@ def test_faces_that_lie_on_others_are_as_dark_as_in_cycles(studio: Any, turn: fl
         at = {"location": (-1, -1, 0.5), "rotation_euler": (turn, turn / 2, 0)}
         studio.mesh(name, corners * (1 - offset / 2) + (offset / 2, offset / 2, 0), [(0, 1, 2, 3)], **at)
     studio.compare(mean=1e-3 if turn == 0 else 5e-3, error=1e-3 if turn == 0 else 0.02)
+
+
+def test_faces_with_vertices_that_are_not_finite_are_left_out(studio: Any) -> None:
+    studio.lit_floor()
+    square = [(-1, -1, 0.5), (1, -1, 0.5), (1, 1, 0.5), (-1, 1, 0.5)]
+    away = [(math.nan, 0, 1), (0, 0, math.inf), (0, 1e12, 0)]
+    studio.mesh("Torn", [*square, *away], [(0, 1, 2, 3), (0, 1, 4), (2, 3, 5), (1, 2, 6)])
+    studio.compare(mean=1e-3, error=1e-3)
+    assert any("their faces are left out" in message.text for message in record.last.report)
 
 
 @pytest.mark.parametrize("missing", ["library", "texture"])
