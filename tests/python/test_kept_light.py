@@ -93,7 +93,7 @@ def test_kept_light_is_as_good_as_light_gathered_anew() -> None:
 
 
 def test_records_are_neither_too_bright_nor_too_dark() -> None:
-    """What they reflect at places of the walls, compared with paths from there."""
+    """At places of the walls their light is compared with that of paths from there."""
     room = Room()
     seen = [room.render(passes=["diffuse_indirect", "position", "normal"], seed=seed) for seed in range(12)]
     position, normal = (np.asarray(seen[0][name], float).reshape(-1, 3) for name in ("position", "normal"))

@@ -10,7 +10,7 @@ from shlight.nodes import Shader, Vector
 from shlight.nodes.films import LEAST_THICKNESS
 from shlight.nodes.fresnel import fresnel_of
 from shlight.nodes.inputs import towards_viewer
-from shlight.nodes.principled import Distribution, aspect_stretch, dielectric_bounces, mean_roughness, stretched
+from shlight.nodes.microfacets import Distribution, aspect_stretch, dielectric_bounces, mean_roughness, stretched
 from shlight.nodes.shader import Lobe, Refraction
 from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 

@@ -18,7 +18,7 @@ constexpr double kParallel = 1 - 1e-6;
 /// Distance from a triangle's edges at which a point is inside ÷ the point's error.
 constexpr double kClearOfEdges = 4;
 
-/// As Cycles has them: in float, in the frame of the world.
+/// The corners of the hit triangle in float, in the frame of the world, where Cycles has them.
 std::array<Vec3f, 3> corners_in_float(const PlacedMeshes& placed, const RayHit& hit) {
     std::array<Vec3f, 3> rounded;
     std::ranges::transform(placed.corners(hit), rounded.begin(),

@@ -23,20 +23,14 @@ from shlight.nodes.inputs import (
 )
 from shlight.nodes.mathematics import map_range, mapping
 from shlight.nodes.metals import conductor, metallic
+from shlight.nodes.microfacets import glass, glossy, reflecting_normal, refraction, rising_lobes
 from shlight.nodes.noises import musgrave, noise, wave
 from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.osl import osl
 from shlight.nodes.patterns import Bricks, bricks, magic
 from shlight.nodes.photometric import ies
-from shlight.nodes.principled import (
-    glass,
-    glossy,
-    oren_nayar,
-    principled,
-    reflecting_normal,
-    refraction,
-    rising_lobes,
-)
+from shlight.nodes.principled import principled
+from shlight.nodes.rough_diffuse import oren_nayar
 from shlight.nodes.shader import Shader, absorbing, emission, ggx, lambert, mix, scaled, toon, translucent, transparent
 from shlight.nodes.skies import Sky, hosek_wilkie, preetham
 from shlight.nodes.spectra import blackbody, wavelength

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from shlight.nodes.inputs import normal, towards_viewer
-from shlight.nodes.principled import reflecting_normal
+from shlight.nodes.microfacets import reflecting_normal
 from shlight.nodes.shader import Lobe, Shader, ggx
 from shlight.nodes.subsurface import subsurface
 from shlight.nodes.values import (

@@ -13,7 +13,7 @@ from shlight._arrays import checked_flag, checked_name
 from shlight.nodes import films
 from shlight.nodes.films import film
 from shlight.nodes.inputs import normal, towards_viewer
-from shlight.nodes.principled import (
+from shlight.nodes.microfacets import (
     EDGE,
     Distribution,
     aspect_stretch,
