@@ -147,9 +147,10 @@ class Worker:
         expected = 2 * time_of.seconds((request.samples + 1) // 2)
         seconds = min(expected, request.reference_seconds or expected)
         self._channel.stage(f"Reference, at most {request.samples} samples", seconds)
-        halves, figures["reference"] = render_halves(
-            self._part_of_half, time_of, request.samples, request.reference_seconds, request.noise
-        )
+        with _kept_scene(self._scene.render):
+            halves, figures["reference"] = render_halves(
+                self._part_of_half, time_of, request.samples, request.reference_seconds, request.noise
+            )
         figures["reference"]["seeds"] = SEEDS_OF_HALVES
         return halves
 
@@ -215,6 +216,16 @@ def bounces_of(scene: Any) -> Bounces:
     """The bounces that shlight renders."""
     settings = scene.shlight
     return settings.max_bounces, settings.glossy_bounces, settings.transmission_bounces
+
+
+@contextmanager
+def _kept_scene(render: Any) -> Iterator[None]:
+    """Cycles builds its scene once for all renders within."""
+    before, render.use_persistent_data = render.use_persistent_data, True
+    try:
+        yield
+    finally:
+        render.use_persistent_data = before
 
 
 @contextmanager
