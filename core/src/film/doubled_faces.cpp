@@ -54,7 +54,7 @@ std::vector<MeshInstance> instances_of(const CompiledScene& scene, const std::ve
     for (std::size_t i = 0; i < placements.size(); ++i) {
         if (placements[i]) {
             const Placement& own = scene.placed().placements()[i];
-            instances.push_back({scene.mesh_numbers()[own.mesh], own.number});
+            instances.emplace_back(scene.mesh_numbers()[own.mesh], own.number);
         }
     }
     std::ranges::sort(instances);

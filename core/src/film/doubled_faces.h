@@ -11,7 +11,8 @@
 
 namespace shlight {
 
-/// The number of placements, whether some of their faces do, by camera rays through a grid of pixels; empty if none do.
+/// A flag for each placement of the scene: some of its faces lie on others where camera rays through a grid of pixels
+/// meet them. Empty if none do.
 std::vector<bool> find_doubled(const Picture& picture, const Stopped& stopped);
 
 /// The same placements as RenderReport::doubled lists them.

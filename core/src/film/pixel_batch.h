@@ -85,7 +85,7 @@ struct Picture {
     std::uint32_t previews = 0;             ///< the first of them, which do not count beside the others
     std::vector<glm::dvec2> filter_places;  ///< likewise as the filter spreads them, from the pixel's middle
     bool takes_differences;                 ///< whether any material looks at neighbouring camera rays
-    std::vector<bool> doubled;              ///< see find_doubled()
+    std::vector<bool> doubled;              ///< find_doubled() of this picture
     LightingScene lighting;
     std::optional<LightingScene> filtered;  ///< see lighting_of_records(); none: as `lighting`
 

@@ -126,14 +126,14 @@ bool CameraSurfaces::is_covered(const RayHit& hit, const SurfacePoint& point, co
     }
     near_.clear();
     scene_->rays().near_opaque(Vec3f(point.position), static_cast<float>(2 * point.error), near_);
-    const auto is_interface = [&](const RayHit& face) {
+    const auto lets_through = [&](const RayHit& face) {
         const std::uint32_t material = placed.surface(face, Vec3f(-towards_viewer)).material;
         const SurfaceShader* shader = scene_->materials()[material].shader.get();
-        return shader != nullptr && !shader->refractions.empty();
+        return (placed.seen_by(face) & kShadowRay) == 0 || (shader != nullptr && !shader->refractions.empty());
     };
     return std::ranges::any_of(near_, [&](const RayHit& face) {
         return (face.instance != hit.instance || face.triangle != hit.triangle) && covers(placed, face, point) &&
-               stops(placed, face, hit, towards_viewer) && !is_interface(face);
+               stops(placed, face, hit, towards_viewer) && !lets_through(face);
     });
 }
 

@@ -99,6 +99,8 @@ class PlacedMeshes {
     /// the texture coordinate u grows, or, on meshes without texture coordinates, around the mesh's own z-axis.
     double azimuth(const RayHit& hit, const ShadingFrame& frame) const;
     const Label& label(const RayHit& hit) const;
+    /// MeshUse::seen_by of what was hit.
+    std::uint32_t seen_by(const RayHit& hit) const { return mesh_of(placements_[hit.instance]).seen_by; }
     /// MeshUse::is_holdout of what was hit.
     bool is_holdout(const RayHit& hit) const { return mesh_of(placements_[hit.instance]).is_holdout; }
     /// Whether triangles were hit, and no curve or sphere.
