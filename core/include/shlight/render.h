@@ -82,9 +82,9 @@ struct RenderSettings {
     /// Mean of the channels that what a path brings is cut to, of light that has bounced as Cycles' Clamp Indirect
     /// counts it; 0: nothing is cut. What a diffuse surface reflects is cut as if that were 0.8 of it.
     double clamp_indirect = 0;
-    /// Whether opaque faces that lie on others are dark where Cycles' rays, which begin on one of them in float, meet the
-    /// other: black if rounding has both in one plane, and else with dark patches. Of meshes that camera rays through a
-    /// grid of pixels find, see RenderReport::doubled.
+    /// Whether opaque faces that lie on others are dark where Cycles' rays, which begin on one of them in float, meet
+    /// the other: black if rounding has both in one plane, and else with dark patches. Of meshes that camera rays
+    /// through a grid of pixels find, see RenderReport::doubled.
     bool darken_doubled = false;
     PassSettings passes;
 };
