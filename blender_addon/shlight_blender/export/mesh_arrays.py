@@ -133,8 +133,10 @@ class MeshArrays:
         return normals[self.triangles] if normals is not None and normals.ndim == 2 else normals
 
     def within_reach(self) -> MeshArrays | None:
-        """The triangles whose coordinates are at most `FARTHEST`; None if there are none."""
+        """The triangles whose coordinates are at most `FARTHEST`: this mesh if all are, None if there are none."""
         known = (np.abs(self.vertices) <= FARTHEST).all(1)
+        if known.all():
+            return self
         kept = known[self.triangles].all(1)
         if not kept.any():
             return None
@@ -170,14 +172,13 @@ def object_arrays(
         mesh_object.to_mesh_clear()
     if arrays is None:
         return None
-    if not (np.abs(arrays.vertices) <= FARTHEST).all():
+    near = arrays.within_reach()
+    if near is not arrays:
         text = "some of its vertices are not finite, or farther than 1e9 m away; their faces are left out"
         report.add(place, text, Effect.THING)
-        if (arrays := arrays.within_reach()) is None:
-            return None
-    if arrays.normals is not None and not np.isfinite(arrays.normals).all():
-        arrays.normals = None
-    return arrays
+    if near is not None and near.normals is not None and not np.isfinite(near.normals).all():
+        near.normals = None
+    return near
 
 
 def complete(

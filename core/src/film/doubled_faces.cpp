@@ -40,7 +40,7 @@ std::vector<bool> find_doubled(const Picture& picture, const Stopped& stopped) {
         near.clear();
         rays.near(Vec3f(point.position), static_cast<float>(2 * point.error), near);
         for (const RayHit& other : near) {
-            if ((other.instance != hit.instance || other.triangle != hit.triangle) && covers(placed, other, point)) {
+            if (covers(placed, other, hit, point)) {
                 found.resize(placed.placements().size());
                 found[hit.instance] = found[other.instance] = true;
             }

@@ -132,8 +132,7 @@ bool CameraSurfaces::is_covered(const RayHit& hit, const SurfacePoint& point, co
         return (placed.seen_by(face) & kShadowRay) == 0 || (shader != nullptr && !shader->refractions.empty());
     };
     return std::ranges::any_of(near_, [&](const RayHit& face) {
-        return (face.instance != hit.instance || face.triangle != hit.triangle) && covers(placed, face, point) &&
-               stops(placed, face, hit, towards_viewer) && !lets_through(face);
+        return covers(placed, face, hit, point) && stops(placed, face, hit, towards_viewer) && !lets_through(face);
     });
 }
 

@@ -38,8 +38,9 @@ Vec3f stable_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
 
 }  // namespace
 
-bool covers(const PlacedMeshes& placed, const RayHit& face, const SurfacePoint& point) {
-    if (!placed.is_triangle(face)) {
+bool covers(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const SurfacePoint& point) {
+    const bool is_own = face.instance == hit.instance && face.triangle == hit.triangle;
+    if (is_own || !placed.is_triangle(face)) {
         return false;
     }
     const std::array<Vec3d, 3> at = placed.corners(face);

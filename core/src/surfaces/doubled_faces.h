@@ -10,8 +10,9 @@
 
 namespace shlight {
 
-/// Whether a face lies on a point of another surface, within the error of that point; its edges do not count.
-bool covers(const PlacedMeshes& placed, const RayHit& face, const SurfacePoint& point);
+/// Whether a face, which is not the one that was hit, lies on the hit's point, within the error of that point; its
+/// edges do not count.
+bool covers(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const SurfacePoint& point);
 
 /// Whether rays of Cycles that leave a hit to the side of `way` meet a face that covers it: they begin at the hit's
 /// place in float, and meet what is there at the distance 0. Precondition: triangles.

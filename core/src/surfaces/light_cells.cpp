@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "shlight/sampling.h"
-
 namespace shlight {
 namespace {
 

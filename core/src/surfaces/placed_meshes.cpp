@@ -145,7 +145,7 @@ Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point
 SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) const {
     assert(!hit.missed());
     const Placement& placement = placements_[hit.instance];
-    if (mesh_of(placement).shape->form != SurfaceForm::triangles) {
+    if (!is_triangle(hit)) {
         return round_surface(hit, direction);
     }
     const std::array<double, 3> weights = weights_of(hit);
