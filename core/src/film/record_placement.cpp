@@ -21,6 +21,10 @@ constexpr double kReach = 0.5;
 /// Radius of a record ÷ the edge of its cell.
 constexpr double kLeastSteps = 0.75;
 constexpr double kMostSteps = 2.5;
+/// The share of what a picture shows at a record that its noise may be. A record with more reaches as many times as
+/// far, up to kMostSpread times: one of its rays has met a small bright place, and the surface around shares its light.
+constexpr double kPlainNoise = 0.1;
+constexpr double kMostSpread = 3;
 /// RecordRays::record()'s reach ÷ the edge of the record's cell.
 constexpr double kGradientSteps = 1.5;
 /// Radius of a record that was found wrong farther away ÷ the width of a pixel, at least.
@@ -135,8 +139,10 @@ RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const s
 
 void RecordPlacement::add(std::span<LightRecord> made, std::span<const Wanted> wanted) {
     for (std::size_t i = 0; i < made.size(); ++i) {
-        const double edge = std::ldexp(1.0, wanted[i].level);
-        made[i].limit_radius(kReach * made[i].radius, kLeastSteps * edge, kMostSteps * edge);
+        const double noise = mean(quotient(Vec3d(made[i].noise), wanted[i].allowed)) * threshold_;
+        const double spread = std::clamp(noise / kPlainNoise, 1.0, kMostSpread);
+        const double edge = spread * std::ldexp(1.0, wanted[i].level);
+        made[i].limit_radius(spread * kReach * made[i].radius, kLeastSteps * edge, kMostSteps * edge);
         stored_->records.add(std::move(made[i]));
     }
 }
