@@ -161,7 +161,7 @@ RecordPlacement::Row RecordPlacement::find(int row, int step, Finder& finder) co
     found.pixels = finder.rays.size();
     finder.surfaces.trace(finder.rays, {}, 1, finder.hits, finder.light);
     for (const CameraSurfaces::Surface& surface : finder.surfaces.surfaces()) {
-        if (surface.sees_lights() && !surface.is_covered && surface.bounces < paths_.max_bounces &&
+        if (surface.sees_lights() && surface.cover == Cover::none && surface.bounces < paths_.max_bounces &&
             surface.depth <= paths_.transparent_bounces) {
             look_at(surface, step, finder, found);
         }

@@ -68,9 +68,10 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
         pass_on(first, sink);
         enter_bodies(first, last);
         if (!walks_.empty() || !probes_.empty()) {
+            const std::size_t exits = surfaces_.size();
             leave_bodies();
-            run_programs({}, last);
-            pass_on(last, sink);
+            run_programs({}, exits);
+            pass_on(exits, sink);
         }
     }
     add_hits(sink, hits);
@@ -104,7 +105,7 @@ void CameraSurfaces::meet(const Sink& sink) {
             const double reach = std::isinf(segment.density) ? 0.0 : 2 * point.error;
             add_lamps(viewer, segment, parts_[i], distance + reach, sink);
         }
-        Surface end = {segment, met_[i], point, -direction, distance, is_covered(met_[i], point, -direction), 0, 0};
+        Surface end = {segment, met_[i], point, -direction, distance, cover(met_[i], point, -direction), 0, 0};
         if (segment.source == RaySource::camera && scene_->placed().is_holdout(met_[i])) {
             end.source = RaySource::held_out;
         }
@@ -119,10 +120,10 @@ void CameraSurfaces::meet(const Sink& sink) {
     parts_.clear();
 }
 
-bool CameraSurfaces::is_covered(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer) {
+Cover CameraSurfaces::cover(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer) {
     const PlacedMeshes& placed = scene_->placed();
     if (settings_.doubled == nullptr || !(*settings_.doubled)[hit.instance] || !placed.is_triangle(hit)) {
-        return false;
+        return Cover::none;
     }
     near_.clear();
     scene_->rays().near_opaque(Vec3f(point.position), static_cast<float>(2 * point.error), near_);
@@ -131,9 +132,45 @@ bool CameraSurfaces::is_covered(const RayHit& hit, const SurfacePoint& point, co
         const SurfaceShader* shader = scene_->materials()[material].shader.get();
         return (placed.seen_by(face) & kShadowRay) == 0 || (shader != nullptr && !shader->refractions.empty());
     };
-    return std::ranges::any_of(near_, [&](const RayHit& face) {
-        return covers(placed, face, hit, point) && stops(placed, face, hit, towards_viewer) && !lets_through(face);
-    });
+    Cover found = Cover::none;
+    for (const RayHit& face : near_) {
+        if (covers(placed, face, hit, point) && !lets_through(face)) {
+            found = std::max(found, cover_by(placed, face, hit, towards_viewer));
+        }
+    }
+    return found;
+}
+
+/// Each face sends light towards the other. At every other place it meets that, elsewhere it leaves on the far side;
+/// and what it meets is covered as often as not. So each way brings half the albedo, which both are taken to have.
+void CameraSurfaces::leave_gap(std::size_t number, const Sink& sink) {
+    find_lobes(surfaces_[number], lobes_);
+    Rgb albedo(0);
+    for (const SurfaceLobe& lobe : lobes_) {
+        albedo += is_glossy(lobe.shape) || lobe.translucent ? Rgb(0) : lobe.weight;
+    }
+    Surface near = surfaces_[number];
+    near.kind = near.kind_after(PathKind::diffuse);
+    near.cover = Cover::none;
+    Surface far = near;
+    far.point = near.point.turned();
+    far.towards_viewer = glm::reflect(near.towards_viewer, near.point.geometric_normal);
+    std::array<Rgb, 2> shares{Rgb(0), Rgb(0)};
+    Rgb share(1);
+    for (std::uint32_t ways = 1; near.bounces + ways <= settings_.max_bounces; ++ways) {
+        share *= glm::clamp(albedo / 2.0F, Rgb(0), Rgb(0.5F));
+        shares[ways % 2] += share;
+    }
+    near.throughput *= shares[0];
+    near.bounces += 2;
+    far.throughput *= shares[1];
+    far.bounces += 1;
+    for (const Surface& side : {near, far}) {
+        if (reflects(side)) {
+            reflect(side, sink);
+            surfaces_.push_back(side);
+        }
+    }
 }
 
 /// Neighbours of other rays than the camera's are unknown; places near by, and the directions to them, are Cycles'.
@@ -293,6 +330,8 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
             leave_empty(surface, surface.throughput - throughput, sink);
         } else if (reflects(surface)) {
             reflect(surface, sink);
+        } else if (surface.cover == Cover::by_rounding && is_shaded(surface)) {
+            leave_gap(i, sink);
         }
     }
 }

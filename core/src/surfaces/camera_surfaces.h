@@ -21,6 +21,7 @@
 #include "lobes/refraction.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
+#include "surfaces/doubled_faces.h"
 #include "surfaces/lamp_drawer.h"
 #include "surfaces/placed_meshes.h"
 #include "surfaces/stored_light.h"
@@ -187,7 +188,7 @@ class CameraSurfaces {
         SurfacePoint point;
         Vec3d towards_viewer;
         double distance;      ///< from the origin of the whole ray
-        bool is_covered;      ///< light that it reflects is stopped by a face that lies on it
+        Cover cover;          ///< by a face that lies on it and stops light that it reflects
         std::size_t results;  ///< of its program: where the first is
         std::size_t stride;   ///< and from result to result
 
@@ -269,7 +270,9 @@ class CameraSurfaces {
     float kept(const Segment& segment, const Rgb& radiance) const {
         return segment.emitted_bounces() > 0 ? settings_.kept(radiance / segment.chance) : 1.0F;
     }
-    bool is_covered(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer);
+    Cover cover(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer);
+    /// Paths from a covered surface, which the face above sends back to either side.
+    void leave_gap(std::size_t number, const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
     PlacesBeside places_beside(const SurfacePlace& place, const Surface& surface, const NeighbourRays& neighbours,
@@ -281,7 +284,7 @@ class CameraSurfaces {
                segment.glossy <= settings_.glossy_bounces && segment.transmissions <= settings_.transmission_bounces &&
                segment.depth <= settings_.transparent_bounces;
     }
-    bool reflects(const Surface& surface) const { return is_shaded(surface) && !surface.is_covered; }
+    bool reflects(const Surface& surface) const { return is_shaded(surface) && surface.cover == Cover::none; }
     /// A ray through a body, of which all hits are places near a surface.
     struct SubsurfaceProbe {
         std::size_t surface;

@@ -57,7 +57,7 @@ bool covers(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, c
     return std::ranges::min(distances) > kClearOfEdges * point.error;
 }
 
-bool stops(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const Vec3d& way) {
+Cover cover_by(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const Vec3d& way) {
     const auto [a, b, c] = corners_in_float(placed, hit);
     const Vec3f begin = a + hit.u * (b - a) + hit.v * (c - a);
     std::array<Vec3f, 3> corners = corners_in_float(placed, face);
@@ -66,7 +66,10 @@ bool stops(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, co
     }
     const Vec3f normal = stable_normal(corners[2] - corners[0], corners[0] - corners[1], corners[1] - corners[2]);
     const float height = glm::dot(corners[0], normal);  // of the face above where the ray begins
-    return glm::dot(Vec3d(normal), way) > 0 ? height >= 0 : height <= 0;
+    if (height == 0) {
+        return Cover::in_plane;
+    }
+    return (glm::dot(Vec3d(normal), way) > 0) == (height > 0) ? Cover::by_rounding : Cover::none;
 }
 
 }  // namespace shlight

@@ -3,6 +3,8 @@
 // Faces that lie on others. Rays that begin on one of them in float meet the other or miss it, as rounding has it.
 #pragma once
 
+#include <cstdint>
+
 #include "shlight/ray_tracer.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
@@ -14,8 +16,14 @@ namespace shlight {
 /// edges do not count.
 bool covers(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const SurfacePoint& point);
 
-/// Whether rays of Cycles that leave a hit to the side of `way` meet a face that covers it: they begin at the hit's
-/// place in float, and meet what is there at the distance 0. Precondition: triangles.
-bool stops(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const Vec3d& way);
+enum class Cover : std::uint8_t {
+    none,
+    by_rounding,  ///< rounding has put the hit's place behind the face
+    in_plane,     ///< both are in one plane to the last bit
+};
+
+/// How rays of Cycles that leave a hit to the side of `way` are stopped by a face that covers it: they begin at the
+/// hit's place in float, and meet what is there at the distance 0. Precondition: triangles.
+Cover cover_by(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit, const Vec3d& way);
 
 }  // namespace shlight
