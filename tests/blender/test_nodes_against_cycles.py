@@ -466,6 +466,23 @@ def test_shape_of_a_mesh(studio: Any) -> None:
         assert np.ptp(theirs[theirs > 1.0]) >= 0.05, output
 
 
+def test_a_mesh_that_is_deformed_has_the_coordinates_of_its_own_shape(studio: Any) -> None:
+    body = studio.ball(rings=8)
+    basis, wide = (body.shape_key_add(name=name) for name in ("Basis", "Wide"))
+    wide.data.foreach_set("co", np.ravel([2 * point.co for point in basis.data]))
+    wide.value = 0.3
+    bend = body.modifiers.new("Bend", "SIMPLE_DEFORM")
+    bend.deform_method, bend.angle, bend.deform_axis = "TWIST", 1.5, "Z"
+    body.modifiers.new("Subdivided", "SUBSURF")
+    body.data.materials.append(material(Case("ShaderNodeTexCoord")))
+    studio.camera(location=(3, -4, 3))
+    studio.scene.cycles.pixel_filter_type, studio.scene.cycles.filter_width = "GAUSSIAN", 0.01
+    studio.scene.shlight.pixel_samples = 1
+    ours, theirs = picture(studio, "SHLIGHT"), picture(studio, "CYCLES")
+    assert (np.abs(ours - theirs).max(axis=2) <= 2e-3).mean() >= 0.97  # all but edges
+    assert np.ptp(theirs[theirs > 1.0]) >= 0.5
+
+
 @pytest.mark.parametrize(("projection", "blend"), [("BOX", 0.0), ("BOX", 0.4), ("SPHERE", 0.0), ("TUBE", 0.0)])
 def test_pictures_are_projected(studio: Any, projection: str, blend: float) -> None:
     """Onto a body with sides that look everywhere."""

@@ -76,8 +76,9 @@ def test_faces_that_lie_on_others_are_as_dark_as_in_cycles(studio: Any, turn: fl
     for name, offset in (("Large", 0.0), ("Small", 0.5)):
         at = {"location": (-1, -1, 0.5), "rotation_euler": (turn, turn / 2, 0)}
         studio.mesh(name, corners * (1 - offset / 2) + (offset / 2, offset / 2, 0), [(0, 1, 2, 3)], **at)
-    mean = 1e-2 if bounces else 5e-3 if turn else 1e-3
-    studio.compare(mean=mean, error=3e-3 if bounces else 0.02 if turn else 1e-3)
+    mean, error = (1e-3, 1e-3) if turn == 0 else (1e-2, 3e-3) if bounces else (5e-3, 0.02)
+    elsewhere = turn > 0 and bpy.app.version >= (5, 2, 0)  # whose Cycles rounds otherwise, so that patches move
+    studio.compare(mean=0.03 if elsewhere else mean, error=error)
 
 
 def test_faces_with_vertices_that_are_not_finite_are_left_out(studio: Any) -> None:

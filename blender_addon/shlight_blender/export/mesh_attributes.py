@@ -196,7 +196,7 @@ def _layer(triangles: Triangles, layer: Any) -> FloatArray | None:
 def _generated(mesh: Any, triangles: Triangles) -> FloatArray:
     middle, size = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
     size = np.where(size != 0.0, size, 1.0)
-    unit = (triangles.vertices - middle + size) / (2.0 * size)
+    unit = (_vectors(mesh.vertices, "undeformed_co") - middle + size) / (2.0 * size)
     return unit.astype(np.float32)[triangles.corner_vertices]
 
 
