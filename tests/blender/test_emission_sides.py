@@ -89,3 +89,22 @@ def test_a_dome_lights_what_it_surrounds_by_its_inside_alone(studio: Any, textur
     assert image[..., :3].mean() > 0.3
     dome.data.materials[0] = glow(studio, "Backfacing", 1, 0, textured=textured)
     assert np.abs(studio.render("SHLIGHT")[..., :3]).max() == 0
+
+
+def test_light_that_varies_with_the_direction_has_its_total(studio: Any) -> None:
+    """A ball whose rim shines, far from the floor that is seen."""
+    made = glow(studio, "Backfacing", 0, 0)
+    tree = made.node_tree
+    facing = tree.nodes.new("ShaderNodeLayerWeight")
+    facing.inputs["Blend"].default_value = 0.7
+    brighter = tree.nodes.new("ShaderNodeMath")
+    brighter.operation, brighter.inputs[1].default_value = "MULTIPLY", 40.0
+    tree.links.new(facing.outputs["Facing"], brighter.inputs[0])
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    tree.links.new(brighter.outputs[0], emission.inputs["Strength"])
+    studio.ball(0.3, made, rings=24, location=(0, 0, 3))
+    studio.plane(4)
+    studio.plain_world((0, 0, 0))
+    studio.camera(location=(0, -4, 2), target=(0, 0, 0))
+    studio.compare(mean=0.01, error=2e-3)
+    assert any("varies with the direction" in message for message in studio.messages())

@@ -15,8 +15,13 @@ from .mesh_attributes import attribute_component
 Array = NDArray[np.float64]
 
 
-def at_corners(part: MeshArrays, to_world: Array, object_values: Sequence[float], entry: Input) -> Array:
-    """A number that a program reads, at the corners (k, 3); it is linear between them, or taken to be."""
+def at_corners(
+    part: MeshArrays, to_world: Array, object_values: Sequence[float], entry: Input, view: Array | None = None
+) -> Array:
+    """A number that a program reads, at the corners (k, 3); it is linear between them, or taken to be.
+
+    view: unit, towards the viewer, where each normal is z and each first edge x; without one, along the normal.
+    """
     source, index, component = entry
     corners = part.vertices[part.triangles].astype(np.float64)
     places = corners @ to_world[:3, :3].T + to_world[:3, 3]
@@ -41,6 +46,10 @@ def at_corners(part: MeshArrays, to_world: Array, object_values: Sequence[float]
         return np.full(corners.shape[:2], object_values[int(index)])
     face = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
     face *= np.sign(np.linalg.det(to_world[:3, :3])) / np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 1e-30)
+    if source == "towards_viewer" and view is not None:
+        along = places[:, 1] - places[:, 0]
+        along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-30)
+        face = view[0] * along + view[1] * np.cross(face, along) + view[2] * face
     if source in TURNED:
         return np.repeat(face[:, None, component], 3, axis=1)
     return np.zeros(corners.shape[:2])

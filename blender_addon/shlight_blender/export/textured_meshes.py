@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .corner_values import at_corners
-from .emission import VaryingEmission, divided, of_both_sides, share_of
+from .emission import Input, VaryingEmission, divided, of_both_sides, share_of
 from .materials import Surface
 from .mesh_arrays import MeshArrays
 
@@ -39,6 +39,17 @@ SCRIPT_SAMPLING_LEVELS = 6  # at most, where a script is run for each sample
 MOST_SAMPLES = 1 << 20
 MOST_PARTS = 1 << 18
 SAMPLES_AT_ONCE = 1 << 18
+
+
+def _views(count: int) -> Array:
+    """Directions (count, 3) around z, as dense as their cosine with it."""
+    rank = (np.arange(count) + 0.5) / count
+    azimuth = np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
+    return np.stack([np.sqrt(rank) * np.cos(azimuth), np.sqrt(rank) * np.sin(azimuth), np.sqrt(1.0 - rank)], axis=1)
+
+
+# Directions in which a surface is looked at whose emission depends on them.
+VIEWS = _views(8)
 
 # Corners of a quarter, from those of the triangle; wound as it is.
 QUARTERS = 0.5 * np.array(
@@ -237,6 +248,8 @@ def with_even_emission(
             remark("a Wireframe in its emission is drawn coarsely, and so is the total of its light")
         else:
             _report_error(pieces, colors, remark)
+        if any(source == "towards_viewer" for source, _, _ in getattr(surfaces[slot].varying, "inputs", ())):
+            remark("its emission varies with the direction; it lights other surfaces by its mean over all")
         parts.append(_of_pieces(part, pieces, len(made) + colors.color_of))
         made += [replace(surfaces[slot], emission=of_both_sides(color), varying=None) for color in colors.radiance]
     return _joined(parts), made
@@ -258,11 +271,22 @@ def _cut_surface(
     assert emission is not None
     corners = part.vertices[part.triangles].astype(np.float64)
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    inputs = list(dict.fromkeys(emission.inputs))
-    known = np.stack([at_corners(part, to_world, object_values, entry) for entry in inputs], axis=2)
-    count = 3 * len(corners)
-    given = {entry: known[:, :, i].reshape(-1) for i, entry in enumerate(inputs)}
-    texels = [places.reshape(-1, 3, 2) for places in emission.texels(given, count)]
+    inputs = dict.fromkeys(emission.inputs)
+    turned = [entry for entry in inputs if entry[0] == "towards_viewer"]
+    plain = [entry for entry in inputs if entry not in turned]
+    views = list(VIEWS) if turned else [None]
+    columns = [(entry, None) for entry in plain] + [(entry, view) for view in views for entry in turned]
+    known = np.stack([at_corners(part, to_world, object_values, *column) for column in columns], axis=2)
+
+    def seen(places: Array, view: int) -> dict[Input, Array]:
+        first = len(plain) + view * len(turned)
+        numbers = [*range(len(plain)), *range(first, first + len(turned))]
+        return {entry: places[:, i] for entry, i in zip([*plain, *turned], numbers, strict=True)}
+
+    texels = [
+        places.reshape(-1, 3, 2)
+        for places in emission.texels(seen(known.reshape(-1, len(columns)), 0), known[..., 0].size)
+    ]
     differs = (known != known[:, :1]).any(axis=(1, 2))
     levels = np.zeros(len(corners), dtype=np.int64)
     for places in texels or [np.zeros((len(corners), 3, 2))]:
@@ -271,7 +295,8 @@ def _cut_surface(
         levels = np.minimum(levels, SCRIPT_SAMPLING_LEVELS)
 
     def radiance(places: Array) -> Array:
-        return emission.of_sides({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))
+        by_view = [emission.of_sides(seen(places, view), len(places)) for view in range(len(views))]
+        return np.mean(by_view, axis=0)
 
     return cut(radiance, known, levels, area, most)
 
