@@ -54,13 +54,10 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
-        if self.is_preview:
-            self._render_preview(depsgraph)
+        if self.is_preview or depsgraph.scene.original not in bpy.data.scenes.values():
+            self._render_aside(depsgraph)
             return
         frame = frame_of(depsgraph.scene.render)
-        if depsgraph.scene.original not in bpy.data.scenes.values():  # one of Freestyle's own, of strokes
-            self._deliver(depsgraph, frame, {})
-            return
         try:
             self._begin(depsgraph)
             if problem := native_problem() or memory_problem(frame):
@@ -84,16 +81,20 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             traceback.print_exc()
             self._fail(depsgraph, frame, f"{type(error).__name__}: {error}")
 
-    def _render_preview(self, depsgraph: Any) -> None:
-        """The picture of a material, a light or a world in Blender's panels, empty if there can be none."""
+    def _render_aside(self, depsgraph: Any) -> None:
+        """The picture of a scene that Blender makes: a material, a light or a world in a panel, or Freestyle's strokes.
+
+        It is empty if there can be none.
+        """
         frame, image = frame_of(depsgraph.scene.render), None
         if native_problem():
             self._deliver(depsgraph, frame, {})
             return
         import shlight
 
-        from .export import ExportedScene, everything, preview_settings
+        from .export import ExportedScene, everything, preview_settings, stroke_settings
 
+        settings = preview_settings if self.is_preview else stroke_settings
         try:
             exported = ExportedScene()
             exported.look_from(depsgraph, frame=frame)
@@ -103,13 +104,14 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 frame.width,
                 frame.height,
                 progress=lambda _: not self.test_break(),
-                **preview_settings(depsgraph.scene),
+                **settings(depsgraph.scene),
             )
         except (ExportError, shlight.RenderCancelled):
             pass
         except Exception:
             traceback.print_exc()
-        self._deliver(depsgraph, frame, {"": None if image is None else {"combined": image}})
+        made = None if image is None else {"combined": image}
+        self._deliver(depsgraph, frame, dict.fromkeys(_views(depsgraph.scene.render), made))
 
     def _begin(self, depsgraph: Any) -> None:
         """Starts the record of a render with its first view layer; the others add to it."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import os
 import shutil
 import subprocess
@@ -165,19 +166,26 @@ def test_views_are_seen_as_cycles_sees_them(studio: Any, format: str) -> None:
 
 
 @pytest.mark.parametrize("eyes", [1, 2])
-def test_freestyle_ends_and_changes_nothing(studio: Any, eyes: int) -> None:
+def test_freestyle_draws_the_lines_that_cycles_draws(studio: Any, eyes: int) -> None:
     studio.simple_scene()
     render = studio.scene.render
     render.use_multiview = eyes == 2
+    style = bpy.data.linestyles.new("Lines")
+    style.thickness, style.color, style.alpha = 4.0, (0.1, 0.5, 0.9), 0.7
+    freestyle = studio.scene.view_layers[0].freestyle_settings
+    (freestyle.linesets[0] if freestyle.linesets else freestyle.linesets.new("Lines")).linestyle = style
     pictures = []
-    for lines in (False, True):
-        render.use_freestyle = lines
-        render.filepath = str(studio.folder / f"{lines}.exr")
+    for engine, lines in itertools.product(("SHLIGHT", "CYCLES"), (False, True)):
+        render.engine, render.use_freestyle = engine, lines
+        render.filepath = str(studio.folder / f"{engine}{lines}.exr")
         bpy.ops.render.render(write_still=True)
-        pictures.append([read_exr(path) for path in sorted(studio.folder.glob(f"{lines}*.exr"))])
-    np.testing.assert_array_equal(*pictures)
-    assert len(pictures[1]) == eyes
-    assert "Freestyle lines are not supported; left out" in str(record.last.messages)
+        pictures.append(np.array([read_exr(path) for path in sorted(studio.folder.glob(f"{engine}{lines}*.exr"))]))
+    plain, lines_on, _, expected = pictures
+    assert len(lines_on) == eyes
+    for view in range(eyes):
+        assert rel_mse(lines_on[view], expected[view]) <= 5e-3
+        assert rel_mse(plain[view], expected[view]) >= 0.05
+    assert studio.messages() == []
 
 
 def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -253,7 +261,7 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
     joined = shared()
     assert {"DATA_PT_lens", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "RENDER_PT_format"} <= joined
     assert not {"DATA_PT_light", "DATA_PT_EEVEE_light"} & joined
-    assert not [name for name in joined if "_freestyle" in name or "_gpencil" in name or "_grease_pencil" in name]
+    assert not [name for name in joined if "_gpencil" in name or "_grease_pencil" in name]
     shlight_blender.unregister()
     shlight_blender.unregister()
     try:

@@ -6,7 +6,7 @@ from ..report import ExportError, ExportReport
 from .camera import Eye, aperture_of, panorama_of, set_panorama, set_projection
 from .changes import Changes, changes_of, everything, motion_of
 from .scene import ExportedScene, export_scene
-from .settings import preview_settings, render_settings, viewport_settings
+from .settings import preview_settings, render_settings, stroke_settings, viewport_settings
 
 __all__ = [
     "Changes",
@@ -26,6 +26,7 @@ __all__ = [
     "render_settings",
     "set_panorama",
     "set_projection",
+    "stroke_settings",
     "viewport_settings",
     "whole_frame",
 ]

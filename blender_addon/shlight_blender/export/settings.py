@@ -81,6 +81,12 @@ def preview_settings(scene: Any) -> dict[str, Any]:
     }
 
 
+def stroke_settings(scene: Any) -> dict[str, Any]:
+    """Settings of Freestyle's strokes, which shine evenly: only their edges take samples."""
+    samples = {"min_samples": 16, "max_samples": 64, "pixel_samples": None, "time_limit": None}
+    return render_settings(scene) | samples | {"max_bounces": 0}
+
+
 def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:
     """Notes settings of the scene and its view layer that change Cycles' picture and not shlight's."""
     place = f"Scene '{name_of(scene)}'"
@@ -89,8 +95,6 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "this Blender comes without Open Image Denoise; noise stays", Effect.SLIGHT)
     if render.use_motion_blur and getattr(getattr(scene, "cycles", None), "rolling_shutter_type", "NONE") != "NONE":
         report.add(place, "a rolling shutter is not supported; all of the picture is taken at the same times")
-    if getattr(render, "use_freestyle", False):
-        report.add(place, "Freestyle lines are not supported; left out")
     cycles = getattr(scene, "cycles", None)
     if render.use_simplify and getattr(cycles, "texture_resolution_render", 1.0) < 1.0 and bpy.data.images:
         report.add(place, "Simplify's Texture Resolution is not supported; textures keep their size", Effect.SLIGHT)

@@ -23,7 +23,7 @@ EXCLUDED = {
     "NODE_DATA_PT_light",
 }
 # Parts of panels' names for features that shlight does not draw.
-NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")
+NOT_DRAWN = ("_PT_gpencil", "_PT_grease_pencil")
 # Panels of EEVEE and Cycles that edit what shlight reads too, in all versions of Blender.
 INCLUDED = {
     "CYCLES_RENDER_PT_filter",
