@@ -10,6 +10,7 @@ import bpy
 from shlight import has_denoiser
 
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
+from ..frame import frame_of
 from ..names import name_of
 from ..passes import CRYPTOMATTES, SHADOW_CATCHER, stores_denoising_data
 from ..report import Effect, ExportReport
@@ -19,6 +20,8 @@ PASSES_WRITTEN = {"use_pass_combined", f"use_pass_{SHADOW_CATCHER}", *PASSES}
 PASSES_WRITTEN |= {f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES}
 # Says how precise another pass is, and is no pass itself.
 PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
+# Rays for a picture of strokes, which take some seconds.
+STROKE_RAYS = 1 << 27
 
 
 def filter_glossy(scene: Any) -> float:
@@ -82,9 +85,12 @@ def preview_settings(scene: Any) -> dict[str, Any]:
 
 
 def stroke_settings(scene: Any) -> dict[str, Any]:
-    """Settings of Freestyle's strokes, which shine evenly: samples are for their edges alone."""
-    samples = {"min_samples": 32, "max_samples": 64, "pixel_samples": None, "time_limit": None}
-    return render_settings(scene) | samples | {"max_bounces": 0}
+    """Settings of Freestyle's strokes, which shine evenly: samples are for their edges, and black ones show no noise by
+    which more could be asked for."""
+    frame = frame_of(scene.render)
+    samples = min(max(STROKE_RAYS // (frame.width * frame.height), 32), 256)
+    own = {"min_samples": samples, "max_samples": samples, "pixel_samples": None, "time_limit": None}
+    return render_settings(scene) | own | {"max_bounces": 0}
 
 
 def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:
