@@ -86,3 +86,20 @@ def test_a_principled_body_on_a_floor(studio: Any, bounces: int) -> None:
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
     studio.scene.shlight.max_bounces = bounces
     studio.compare(mean=7e-3, error=2e-2)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 0, 0), reason="methods have other names")
+@pytest.mark.parametrize("method", ["BURLEY", pytest.param("RANDOM_WALK", marks=pytest.mark.slow)])
+def test_a_body_whose_normals_are_bent(studio: Any, method: str) -> None:
+    """So far that the viewer's mirror image would be below the surface: Cycles turns them back."""
+    inputs = {"Subsurface Weight": 1.0, "Subsurface Scale": 0.1, "Base Color": (0.8, 0.5, 0.3)}
+    material = studio.material(PRINCIPLED, **inputs)
+    tree = material.node_tree
+    bent = tree.nodes.new("ShaderNodeNormalMap")
+    bent.inputs["Color"].default_value = (1.0, 0.1, 1.0, 1.0)
+    shader = tree.nodes["Principled BSDF"]
+    shader.subsurface_method = method
+    tree.links.new(bent.outputs["Normal"], shader.inputs["Normal"])
+    add_ball(studio, material)
+    light(studio)
+    studio.compare(mean=7e-3, error=2e-2)

@@ -19,7 +19,8 @@ enum class SubsurfaceEntry : std::uint8_t {
     refracted,  ///< by microfacets of GGX
     skin,       ///< one half by microfacets of width 1, the other as from a diffuse surface
     diffuse,
-    disk  ///< not at all: a probe finds places nearby, by the diffusion profile of Christensen & Burley 2015
+    disk,      ///< not at all: a probe finds places nearby, by the diffusion profile of Christensen & Burley 2015
+    exit_only  ///< by the lobe before that has an entry; what comes out there has this lobe's part of that one's weight
 };
 
 /// Light that enters the mesh's body near by, and is scattered there to where the viewer's ray meets it. The lobe is

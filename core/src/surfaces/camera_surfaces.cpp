@@ -438,10 +438,7 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     const float cosine = view_cosine(smooth, surface.towards_viewer);
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
         if (surface.exit_lobe) {
-            const Vec3d own = normal(surface, shader->lobes[*surface.exit_lobe].normal);
-            for (const ShadedLobe& lobe : shader->lobes) {
-                lobes.push_back({lobe.shape, own, Rgb(lobes.size() == *surface.exit_lobe ? 1.0F : 0.0F)});
-            }
+            find_exit_lobes(surface, *shader, lobes);
             return;
         }
         const std::span<const Lobe> fixed = materials_[surface.point.material].lobes();
@@ -459,6 +456,24 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     }
     for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
         lobes.push_back({laid_out(surface, lobe.shape), smooth, lobe.scale(cosine)});
+    }
+}
+
+void CameraSurfaces::find_exit_lobes(const Surface& surface, const SurfaceShader& shader,
+                                     std::vector<SurfaceLobe>& lobes) const {
+    const ShadedLobe& exit = shader.lobes[*surface.exit_lobe];
+    const Vec3d own = normal(surface, exit.normal);
+    bool is_part = false;
+    for (const ShadedLobe& lobe : shader.lobes) {
+        const bool is_exit = &lobe == &exit;
+        const bool has_entry = lobe.subsurface && lobe.subsurface->entry != SubsurfaceEntry::exit_only;
+        is_part = has_entry ? is_exit : is_part;
+        Rgb weight(is_exit ? 1.0F : 0.0F);
+        if (is_part && lobe.subsurface && !has_entry) {
+            weight = color(surface, lobe.weight) / glm::max(color(surface, exit.weight), Rgb(1e-30F));
+        }
+        const bool leans = is_bumped(lobe.shape) && weight != Rgb(0);
+        lobes.push_back({lobe.shape, own, weight, false, false, leans ? leaning(surface, lobe, own) : Vec3d(0)});
     }
 }
 

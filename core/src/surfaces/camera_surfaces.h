@@ -311,6 +311,8 @@ class CameraSurfaces {
     void leave_body(std::size_t number, std::uint32_t lobe, const RayHit& hit, const Vec3d& way, const Rgb& throughput);
     /// Takes what enters below a surface out of lobes_, of which the places where it does have hits of their own.
     void drop_entered(const Surface& surface);
+    /// The lobes by which light comes out of a body that has entered it by the surface's exit_lobe.
+    void find_exit_lobes(const Surface& surface, const SurfaceShader& shader, std::vector<SurfaceLobe>& lobes) const;
     /// The paths that go on from a surface by its lobes.
     void reflect(const Surface& surface, const Sink& sink);
     void reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);

@@ -311,7 +311,9 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
         return false;
     }
     const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
-    const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
+    // Records have no light from below the horizon, and a bump's albedo leaves out what its lobe has there.
+    const double above = lobe.is_bumped() ? (1 + double{cosine}) / 2 : 1.0;
+    const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine) / above);
     // Light of a record is nowhere negative, which may leave too much of some parts.
     for (std::size_t i = 0; parts > 1 && i < recorded_.size(); i += parts) {
         complete(std::span(recorded_).subspan(i + 1, parts - 1), recorded_[i], parts - 2);

@@ -48,7 +48,8 @@ void CameraSurfaces::enter_bodies(std::size_t first, std::size_t last) {
             continue;
         }
         for (std::uint32_t lobe = 0; lobe < shader->lobes.size(); ++lobe) {
-            if (shader->lobes[lobe].subsurface) {
+            const auto& below = shader->lobes[lobe].subsurface;
+            if (below && below->entry != SubsurfaceEntry::exit_only) {
                 enter_body(i, lobe);
             }
         }

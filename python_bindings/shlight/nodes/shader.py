@@ -42,13 +42,22 @@ LEAST_LEANS: dict[BumpShadow, float] = {"ggx": math.radians(6.0), "cubic": math.
 LAMBERT_PARTS = {"lambert": 1.0, "oren_nayar": math.pi, "disney": 1.0}
 
 
+# How rays enter: shlight::SubsurfaceEntry.
+REFRACTED, SKIN, DIFFUSE, DISK, EXIT_ONLY = range(5)
+
+
 @dataclass(frozen=True)
 class Subsurface:
     """This is how light gets below a surface and is scattered there until it comes out."""
 
     # extinction [1/m], albedo of single scattering, and gain, three each; alpha, index, and the mean cosine
     numbers: tuple[Value, ...]
-    entry: int  # the core's SubsurfaceEntry
+    entry: int
+
+    @cached_property
+    def exit_only(self) -> Subsurface:
+        """The same for lobes that follow this one's, by which light only comes out."""
+        return replace(self, entry=EXIT_ONLY)
 
 
 @dataclass(frozen=True)
@@ -311,7 +320,7 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
 def _shadowed_by_bumps(lobe: Lobe) -> tuple[Lobe, ...]:
     """A lobe with Lambert's part of it in the shadow that a bump throws on itself, where its normal leans."""
     part = LAMBERT_PARTS.get(lobe.kind) if isinstance(lobe.kind, str) else None
-    if part is None or lobe.below is not None or lobe.normal is None or lobe.normal is lobe.leans_from:
+    if part is None or lobe.normal is None or lobe.normal is lobe.leans_from:
         return (lobe,)
     n = normalize(lobe.normal)
     smooth = smooth_normal() if lobe.leans_from is None else lobe.leans_from
@@ -319,9 +328,10 @@ def _shadowed_by_bumps(lobe: Lobe) -> tuple[Lobe, ...]:
     if lobe.kind == "disney":
         away = 1.0 - clamp(dot(towards_viewer(), n))
         own = own * (1.0 - 0.5 * (away * away * away * away * away))
+    below = None if lobe.below is None else lobe.below.exit_only
     plain = replace(lobe, leans_from=None)
-    less = replace(plain, kind="lambert", weight=color(own * -1.0))
-    return plain, less, replace(lobe, kind=f"bumped_lambert_{lobe.bump_shadow}", weight=color(own))
+    less = replace(plain, kind="lambert", weight=color(own * -1.0), below=below)
+    return plain, less, replace(lobe, kind=f"bumped_lambert_{lobe.bump_shadow}", weight=color(own), below=below)
 
 
 def _identity(value: Value | None) -> Any:

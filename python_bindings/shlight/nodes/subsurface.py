@@ -7,7 +7,8 @@ import math
 from typing import Literal, get_args
 
 from shlight._arrays import checked_name
-from shlight.nodes.shader import Lobe, Shader, Subsurface, lambert
+from shlight.nodes.microfacets import reflecting_normal
+from shlight.nodes.shader import DIFFUSE, DISK, REFRACTED, SKIN, Lobe, Shader, Subsurface, lambert
 from shlight.nodes.values import (
     Color,
     Number,
@@ -27,8 +28,6 @@ from shlight.nodes.values import (
 
 SubsurfaceMethod = Literal["burley", "random_walk", "random_walk_skin", "random_walk_van_de_hulst"]
 
-# How rays enter: shlight::SubsurfaceEntry.
-REFRACTED, SKIN, DIFFUSE, DISK = range(4)
 # Wrenninge, Villemin & Hery 2017, "Path Traced Subsurface Scattering using Anisotropic Phase Functions and
 # Non-Exponential Free Flights": what a half space reflects gives its albedo of single scattering,
 # (1 - A¼) a atan(b A)^c + A¼ d atan(e A)^f. The numbers are polynomials in the mean cosine, of rising degree; b and e
@@ -78,7 +77,7 @@ def subsurface(
     rho = reflectance(albedo, "albedo")
     known = Color(*(clamp(c) for c in rho))
     far = color(radius, "radius")
-    n = None if at is None else vector(at, "at")
+    n = None if at is None else reflecting_normal(vector(at, "at"))
     width = clamp(number(roughness, "roughness"))
     index = clamp(number(ior, "ior"), 1.01, 3.8)
     is_free = method == "random_walk_van_de_hulst"
