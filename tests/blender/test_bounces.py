@@ -73,7 +73,7 @@ def test_what_bounces_on_bent_normals(studio: Any) -> None:
     studio.area(60, (0, 0, 2.5), size=0.5)
     studio.camera(location=(0, -3, 3), target=(0, 0, 0.2))
     studio.scene.shlight.max_bounces = 2
-    compare(studio, mean=8e-3, error=1e-2)
+    compare(studio, mean=1e-2, error=1e-2)
 
 
 def test_what_bounces_is_clamped_as_in_cycles(studio: Any) -> None:
