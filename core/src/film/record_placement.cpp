@@ -23,7 +23,7 @@ constexpr double kLeastSteps = 0.75;
 constexpr double kMostSteps = 2.5;
 /// The share of what a picture shows at a record that its noise may be. A record with more reaches as many times as
 /// far, up to kMostSpread times: one of its rays has met a small bright place, and the surface around shares its light.
-constexpr double kPlainNoise = 0.1;
+constexpr double kPlainNoise = 0.15;
 constexpr double kMostSpread = 3;
 /// RecordRays::record()'s reach ÷ the edge of the record's cell.
 constexpr double kGradientSteps = 1.5;
