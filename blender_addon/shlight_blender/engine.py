@@ -54,6 +54,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
+        # Freestyle's scenes of strokes are in no file.
         if self.is_preview or depsgraph.scene.original not in bpy.data.scenes.values():
             self._render_aside(depsgraph)
             return

@@ -418,6 +418,11 @@ def stage(studio: Any, listed: list[tuple[Case, Any]]) -> None:
     studio.scene.shlight.pixel_samples = 1
 
 
+def sample_the_middle_of_pixels(studio: Any) -> None:
+    studio.scene.cycles.pixel_filter_type, studio.scene.cycles.filter_width = "GAUSSIAN", 0.01
+    studio.scene.shlight.pixel_samples = 1
+
+
 def picture(studio: Any, engine: str, seed: int = 0) -> Any:
     return studio.render(engine, seed)[::-1, :, :3].astype(np.float64)
 
@@ -454,8 +459,7 @@ def test_shape_of_a_mesh(studio: Any) -> None:
     with bpy.context.temp_override(active_object=body, selected_editable_objects=[body, ear], object=body):
         bpy.ops.object.join()
     studio.camera(location=(0.5, -6, 4), target=(0.7, 0, 0))
-    studio.scene.cycles.pixel_filter_type, studio.scene.cycles.filter_width = "GAUSSIAN", 0.01
-    studio.scene.shlight.pixel_samples = 1
+    sample_the_middle_of_pixels(studio)
     for output in ("Pointiness", "Random Per Island"):
         body.data.materials.clear()
         body.data.materials.append(material(Case("ShaderNodeNewGeometry", {}, output)))
@@ -476,8 +480,7 @@ def test_a_mesh_that_is_deformed_has_the_coordinates_of_its_own_shape(studio: An
     body.modifiers.new("Subdivided", "SUBSURF")
     body.data.materials.append(material(Case("ShaderNodeTexCoord")))
     studio.camera(location=(3, -4, 3))
-    studio.scene.cycles.pixel_filter_type, studio.scene.cycles.filter_width = "GAUSSIAN", 0.01
-    studio.scene.shlight.pixel_samples = 1
+    sample_the_middle_of_pixels(studio)
     ours, theirs = picture(studio, "SHLIGHT"), picture(studio, "CYCLES")
     assert (np.abs(ours - theirs).max(axis=2) <= 2e-3).mean() >= 0.97  # all but edges
     assert np.ptp(theirs[theirs > 1.0]) >= 0.5
@@ -495,8 +498,7 @@ def test_pictures_are_projected(studio: Any, projection: str, blend: float) -> N
     body = studio.ball(rings=6, smooth=False)
     body.data.materials.append(material(Case("ShaderNodeTexImage", {}, 0, properties, prepare)))
     studio.camera(location=(3, -4, 3))
-    studio.scene.cycles.pixel_filter_type, studio.scene.cycles.filter_width = "GAUSSIAN", 0.01
-    studio.scene.shlight.pixel_samples = 1
+    sample_the_middle_of_pixels(studio)
     ours, theirs = picture(studio, "SHLIGHT"), picture(studio, "CYCLES")
     assert (np.abs(ours - theirs).max(axis=2) <= 1e-2).mean() >= 0.97  # all but edges
     assert np.ptp(theirs[theirs > 1.0]) >= 0.5

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "lobes/refraction.h"
-#include "surfaces/doubled_faces.h"
 
 namespace shlight {
 namespace {
@@ -118,59 +117,6 @@ void CameraSurfaces::meet(const Sink& sink) {
     }
     segments_.clear();
     parts_.clear();
-}
-
-Cover CameraSurfaces::cover(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer) {
-    const PlacedMeshes& placed = scene_->placed();
-    if (settings_.doubled == nullptr || !(*settings_.doubled)[hit.instance] || !placed.is_triangle(hit)) {
-        return Cover::none;
-    }
-    near_.clear();
-    scene_->rays().near_opaque(Vec3f(point.position), static_cast<float>(2 * point.error), near_);
-    const auto lets_through = [&](const RayHit& face) {
-        const std::uint32_t material = placed.surface(face, Vec3f(-towards_viewer)).material;
-        const SurfaceShader* shader = scene_->materials()[material].shader.get();
-        return (placed.seen_by(face) & kShadowRay) == 0 || (shader != nullptr && !shader->refractions.empty());
-    };
-    Cover found = Cover::none;
-    for (const RayHit& face : near_) {
-        if (covers(placed, face, hit, point) && !lets_through(face)) {
-            found = std::max(found, cover_by(placed, face, hit, towards_viewer));
-        }
-    }
-    return found;
-}
-
-/// Each face sends light towards the other. At every other place it meets that, elsewhere it leaves on the far side;
-/// and what it meets is covered as often as not. So each way brings half the albedo, which both are taken to have.
-void CameraSurfaces::leave_gap(std::size_t number, const Sink& sink) {
-    find_lobes(surfaces_[number], lobes_);
-    Rgb albedo(0);
-    for (const SurfaceLobe& lobe : lobes_) {
-        albedo += is_glossy(lobe.shape) || lobe.translucent ? Rgb(0) : lobe.weight;
-    }
-    Surface near = surfaces_[number];
-    near.kind = near.kind_after(PathKind::diffuse);
-    near.cover = Cover::none;
-    Surface far = near;
-    far.point = near.point.turned();
-    far.towards_viewer = glm::reflect(near.towards_viewer, near.point.geometric_normal);
-    std::array<Rgb, 2> shares{Rgb(0), Rgb(0)};
-    Rgb share(1);
-    for (std::uint32_t ways = 1; near.bounces + ways <= settings_.max_bounces; ++ways) {
-        share *= glm::clamp(albedo / 2.0F, Rgb(0), Rgb(0.5F));
-        shares[ways % 2] += share;
-    }
-    near.throughput *= shares[0];
-    near.bounces += 2;
-    far.throughput *= shares[1];
-    far.bounces += 1;
-    for (const Surface& side : {near, far}) {
-        if (reflects(side)) {
-            reflect(side, sink);
-            surfaces_.push_back(side);
-        }
-    }
 }
 
 /// Neighbours of other rays than the camera's are unknown; places near by, and the directions to them, are Cycles'.
@@ -456,24 +402,6 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
     }
     for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
         lobes.push_back({laid_out(surface, lobe.shape), smooth, lobe.scale(cosine)});
-    }
-}
-
-void CameraSurfaces::find_exit_lobes(const Surface& surface, const SurfaceShader& shader,
-                                     std::vector<SurfaceLobe>& lobes) const {
-    const ShadedLobe& exit = shader.lobes[*surface.exit_lobe];
-    const Vec3d own = normal(surface, exit.normal);
-    bool is_part = false;
-    for (const ShadedLobe& lobe : shader.lobes) {
-        const bool is_exit = &lobe == &exit;
-        const bool has_entry = lobe.subsurface && lobe.subsurface->entry != SubsurfaceEntry::exit_only;
-        is_part = has_entry ? is_exit : is_part;
-        Rgb weight(is_exit ? 1.0F : 0.0F);
-        if (is_part && lobe.subsurface && !has_entry) {
-            weight = color(surface, lobe.weight) / glm::max(color(surface, exit.weight), Rgb(1e-30F));
-        }
-        const bool leans = is_bumped(lobe.shape) && weight != Rgb(0);
-        lobes.push_back({lobe.shape, own, weight, false, false, leans ? leaning(surface, lobe, own) : Vec3d(0)});
     }
 }
 

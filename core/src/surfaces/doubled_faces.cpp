@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "surfaces/camera_surfaces.h"
 #include "surfaces/round_places.h"
 
 namespace shlight {
@@ -70,6 +71,59 @@ Cover cover_by(const PlacedMeshes& placed, const RayHit& face, const RayHit& hit
         return Cover::in_plane;
     }
     return (glm::dot(Vec3d(normal), way) > 0) == (height > 0) ? Cover::by_rounding : Cover::none;
+}
+
+Cover CameraSurfaces::cover(const RayHit& hit, const SurfacePoint& point, const Vec3d& towards_viewer) {
+    const PlacedMeshes& placed = scene_->placed();
+    if (settings_.doubled == nullptr || !(*settings_.doubled)[hit.instance] || !placed.is_triangle(hit)) {
+        return Cover::none;
+    }
+    near_.clear();
+    scene_->rays().near_opaque(Vec3f(point.position), static_cast<float>(2 * point.error), near_);
+    const auto lets_through = [&](const RayHit& face) {
+        const std::uint32_t material = placed.surface(face, Vec3f(-towards_viewer)).material;
+        const SurfaceShader* shader = scene_->materials()[material].shader.get();
+        return (placed.seen_by(face) & kShadowRay) == 0 || (shader != nullptr && !shader->refractions.empty());
+    };
+    Cover found = Cover::none;
+    for (const RayHit& face : near_) {
+        if (covers(placed, face, hit, point) && !lets_through(face)) {
+            found = std::max(found, cover_by(placed, face, hit, towards_viewer));
+        }
+    }
+    return found;
+}
+
+/// Each face sends light towards the other. At every other place it meets that, elsewhere it leaves on the far side;
+/// and what it meets is covered as often as not. So each way brings half the albedo, which both are taken to have.
+void CameraSurfaces::leave_gap(std::size_t number, const Sink& sink) {
+    find_lobes(surfaces_[number], lobes_);
+    Rgb albedo(0);
+    for (const SurfaceLobe& lobe : lobes_) {
+        albedo += is_glossy(lobe.shape) || lobe.translucent ? Rgb(0) : lobe.weight;
+    }
+    Surface near = surfaces_[number];
+    near.kind = near.kind_after(PathKind::diffuse);
+    near.cover = Cover::none;
+    Surface far = near;
+    far.point = near.point.turned();
+    far.towards_viewer = glm::reflect(near.towards_viewer, near.point.geometric_normal);
+    std::array<Rgb, 2> shares{Rgb(0), Rgb(0)};
+    Rgb share(1);
+    for (std::uint32_t ways = 1; near.bounces + ways <= settings_.max_bounces; ++ways) {
+        share *= glm::clamp(albedo / 2.0F, Rgb(0), Rgb(0.5F));
+        shares[ways % 2] += share;
+    }
+    near.throughput *= shares[0];
+    near.bounces += 2;
+    far.throughput *= shares[1];
+    far.bounces += 1;
+    for (const Surface& side : {near, far}) {
+        if (reflects(side)) {
+            reflect(side, sink);
+            surfaces_.push_back(side);
+        }
+    }
 }
 
 }  // namespace shlight

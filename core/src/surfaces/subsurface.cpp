@@ -204,4 +204,22 @@ void CameraSurfaces::leave_body(std::size_t number, std::uint32_t lobe, const Ra
     surfaces_.push_back(end);
 }
 
+void CameraSurfaces::find_exit_lobes(const Surface& surface, const SurfaceShader& shader,
+                                     std::vector<SurfaceLobe>& lobes) const {
+    const ShadedLobe& exit = shader.lobes[*surface.exit_lobe];
+    const Vec3d own = normal(surface, exit.normal);
+    bool is_part = false;
+    for (const ShadedLobe& lobe : shader.lobes) {
+        const bool is_exit = &lobe == &exit;
+        const bool has_entry = lobe.subsurface && lobe.subsurface->entry != SubsurfaceEntry::exit_only;
+        is_part = has_entry ? is_exit : is_part;
+        Rgb weight(is_exit ? 1.0F : 0.0F);
+        if (is_part && lobe.subsurface && !has_entry) {
+            weight = color(surface, lobe.weight) / glm::max(color(surface, exit.weight), Rgb(1e-30F));
+        }
+        const bool leans = is_bumped(lobe.shape) && weight != Rgb(0);
+        lobes.push_back({lobe.shape, own, weight, false, false, leans ? leaning(surface, lobe, own) : Vec3d(0)});
+    }
+}
+
 }  // namespace shlight
