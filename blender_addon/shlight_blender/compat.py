@@ -327,6 +327,9 @@ DISPLACED_KEEP_CORNERS = VERSION >= (5, 1, 0)
 # the one of the vertices at first.
 BENDS_OLD_NORMAL = VERSION >= (5, 0, 0)
 BENDS_VERTEX_NORMAL = (5, 0, 0) <= VERSION < (5, 1, 0)
+# The bump of a displacement compares heights as far beside the hit as the place before displacement moves in the mean,
+# or as far as the displaced place moves.
+COMPARES_AT_MEAN_STEPS = VERSION < (5, 0, 0)
 # The distance, in pixels, over which the bump of a displacement compares heights.
 DISPLACEMENT_FILTER_WIDTH = 0.1 if VERSION >= (4, 4, 0) else 1.0
 

@@ -91,7 +91,7 @@ def surface_shader(
     shadow_program: ShaderProgram,
     attribute_names: Sequence[str],
     aovs: Sequence[tuple[str, int, bool]],
-    refractions: Sequence[tuple[int, int, int, int | None, bool]],
+    refractions: Sequence[tuple[int, int, int, int | None, bool, bool]],
     blocks_shadow_rays: bool,
     absorption: tuple[float, float, float],
 ) -> SurfaceShader: ...

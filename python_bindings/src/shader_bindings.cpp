@@ -31,7 +31,8 @@ using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
 /// code, registers, number of arguments, and results
 using ScriptTuple =
     std::tuple<AnyArray<std::uint32_t>, AnyArray<std::uint32_t>, std::uint32_t, std::vector<std::uint32_t>>;
-using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>, bool>;
+using RefractionTuple =
+    std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>, bool, bool>;
 /// Kind of lobe, or a Bsdf of one lobe, which brings its shape and ViewWeight; ior, result indices of weight, alpha and
 /// normal, ShadedLobe::several_bounces, and ShadedSubsurface.
 using LobeTuple = std::tuple<std::variant<std::string, Bsdf>, double, std::uint32_t, std::optional<std::uint32_t>,
@@ -225,8 +226,9 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
         shader->aovs.push_back({value, is_color});
         aov_names.push_back(name);
     }
-    for (const auto& [weight, alpha, ior, normal, reflects] : refractions) {
-        shader->refractions.push_back({weight, alpha, ior, normal, reflects});
+    for (const auto& [weight, alpha, ior, normal, reflects, is_beckmann] : refractions) {
+        shader->refractions.push_back(
+            {weight, alpha, ior, normal, reflects, is_beckmann ? Microfacets::beckmann : Microfacets::ggx});
     }
     check_surface_shader(*shader);
     return {std::move(shader), std::move(attribute_names), std::move(aov_names)};

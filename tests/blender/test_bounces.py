@@ -121,7 +121,7 @@ def test_a_wide_lamp_beside_rough_glass(studio: Any) -> None:
     compare(studio, mean=5e-3, error=2e-3)
 
 
-@pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
+@pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX", "BECKMANN"])
 def test_frosted_glass_before_a_sun_and_a_point(studio: Any, distribution: str) -> None:
     glass = studio.material(
         "ShaderNodeBsdfGlass", "Glass", Color=(1, 0.9, 0.8), Roughness=0.5, IOR=1.45, distribution=distribution

@@ -123,13 +123,9 @@ def test_a_normal_map_is_not_bent_and_leans_from_what_is(studio: Any, method: st
     studio.compare(mean=2e-3, error=4e-4)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", METHODS[:2])
 def test_the_place_of_a_displacement_is_that_before_it(studio: Any, method: str) -> None:
-    """Coordinates of the object are those that the UV map has of it, though they would move along with the mesh.
-
-    Cycles is no reference for them where a material moves and bends: it looks them up at places beside the hit that lie
-    in other directions than those between which it takes the slope.
-    """
+    """Coordinates of the object are those that the UV map has of it, though they would move along with the mesh."""
     material = displaced(studio, method)
     hills(studio, material)
     new, link = material.node_tree.nodes.new, material.node_tree.links.new
@@ -144,6 +140,35 @@ def test_the_place_of_a_displacement_is_that_before_it(studio: Any, method: str)
         link(source, turned.inputs["Vector"])
         pictures.append(studio.render("SHLIGHT"))
     assert np.abs(pictures[0] - pictures[1]).mean() <= 2e-4 * pictures[0].mean()
+
+
+@pytest.mark.parametrize("width", [None, 1.0])
+@pytest.mark.parametrize("method", ["BUMP", "BOTH"])
+def test_waves_of_a_ball(studio: Any, method: str, width: float | None) -> None:
+    """Cycles looks their slope up along the displaced face; where they bend the normal, it tells how a ray is lifted.
+
+    width: of a Bump node upon them, whose heights are compared over another distance than the displacement's.
+    """
+    material = displaced(studio, method, Scale=0.1, Midlevel=0.0)
+    new, link = material.node_tree.nodes.new, material.node_tree.links.new
+    wave = new("ShaderNodeTexWave")
+    wave.inputs["Scale"].default_value = 2.0
+    link(new("ShaderNodeTexCoord").outputs["Object"], wave.inputs["Vector"])
+    moves = next(node for node in material.node_tree.nodes if node.type == "DISPLACEMENT")
+    link(wave.outputs["Color"], moves.inputs["Height"])
+    if width is not None:
+        bump = new("ShaderNodeBump")
+        if "Filter Width" not in bump.inputs:
+            pytest.skip("Bump nodes of this version of Blender have no width")
+        bump.inputs["Filter Width"].default_value = width
+        link(wave.outputs["Color"], bump.inputs["Height"])
+        shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
+        link(bump.outputs["Normal"], shader.inputs["Normal"])
+    studio.terminator(studio.ball(material=material, rings=32), 0.5, 0.0)
+    studio.area(150, (3, -1, 1.5), rotation_euler=(0.2, 1.1, 0.0), size=0.5)
+    studio.camera((0, -6, 0), (0, 0, 0))
+    studio.scene.cycles.samples = 512
+    studio.compare(mean=6e-3, error=3e-3)
 
 
 def test_a_change_moves_the_vertices_again(studio: Any) -> None:

@@ -70,6 +70,24 @@ def test_a_coarse_ball_and_a_roof(studio: Any, light: str, shader: str, offsets:
     studio.compare(mean=5e-3, error=1.5e-3)  # Cycles' noise of a large lamp is 5e-4
 
 
+def test_bumps_of_a_metal(studio: Any) -> None:
+    """They take no light from below the smooth surface, with which the picture is 1.3 % too bright."""
+    material = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.8, 0.8, 0.8), Roughness=0.5)
+    new, link = material.node_tree.nodes.new, material.node_tree.links.new
+    wave, bump = new("ShaderNodeTexWave"), new("ShaderNodeBump")
+    wave.inputs["Scale"].default_value, bump.inputs["Distance"].default_value = 2.0, 0.3
+    link(new("ShaderNodeTexCoord").outputs["Object"], wave.inputs["Vector"])
+    link(wave.outputs["Color"], bump.inputs["Height"])
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_GLOSSY")
+    link(bump.outputs["Normal"], shader.inputs["Normal"])
+    studio.terminator(studio.ball(material=material, rings=32), *DEFAULT)
+    studio.camera((0, -6, 0), (0, 0, 0))
+    LIGHTS["area"](studio)
+    studio.world((0.4, 0.4, 0.4))
+    studio.scene.cycles.samples = 512
+    studio.compare(mean=8e-3, error=8e-3)
+
+
 def test_objects_of_one_mesh_have_their_own_offsets(studio: Any) -> None:
     """Half of the picture is a ball without its light at grazing angles, and must not be as the other half."""
     left = studio.ball(material=studio.material(), rings=4, location=(-1.1, 0, 0))

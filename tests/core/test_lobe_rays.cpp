@@ -118,28 +118,30 @@ TEST(LobeRays, AnInterfaceHasTheLightOfItsRays) {
     constexpr std::uint32_t kDrawn = 1 << 16;
     const Vec3d view = glm::normalize(Vec3d(0.6, 0, 0.5));
     for (const auto reflection : {InterfaceReflection::drawn, InterfaceReflection::apart, InterfaceReflection::none}) {
-        for (const double ior : {1.45, 1 / 1.45}) {
+        for (const RoughInterface& interface :
+             {RoughInterface{0.3, 1.45, reflection}, RoughInterface{0.3, 1 / 1.45, reflection},
+              RoughInterface{0.3, 1.45, reflection, Microfacets::beckmann}}) {
             Vec3d drawn(0);
             Vec3d integral(0);
             double share = 0;
             double density = 0;
             for (std::uint32_t i = 0; i < kDrawn; ++i) {
                 const glm::dvec2 point = SobolSequence(3).point(i);
-                const InterfaceRay ray = sample_interface(0.3, ior, view, point, reflection, sobol_beyond(i, 3).x);
+                const InterfaceRay ray = sample_interface(interface, view, point, sobol_beyond(i, 3).x);
                 share += ray.weight > 0 ? 1.0 / kDrawn : 0.0;
                 drawn += ray.weight * Vec3d(1, ray.way.x, ray.way.z) / (1.0 * kDrawn);
                 const double up = 2 * point.x - 1;
                 const double across = std::sqrt(1 - up * up);
                 const double azimuth = 2 * std::numbers::pi * point.y;
                 const Vec3d way(across * std::cos(azimuth), across * std::sin(azimuth), up);
-                const InterfaceValue own = interface_value(0.3, ior, view, way, reflection);
+                const InterfaceValue own = interface_value(interface, view, way);
                 density += own.density * (4 * std::numbers::pi / kDrawn);
                 if (own.density > 0) {
                     integral += own.value * Vec3d(1, way.x, way.z) * (4 * std::numbers::pi / kDrawn);
                 }
             }
-            EXPECT_LE(glm::distance(drawn, integral), 2e-3) << ior;
-            EXPECT_LE(std::abs(share - density), 2e-3) << ior;
+            EXPECT_LE(glm::distance(drawn, integral), 2e-3) << interface.ior;
+            EXPECT_LE(std::abs(share - density), 2e-3) << interface.ior;
         }
     }
 }

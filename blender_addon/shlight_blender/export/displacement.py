@@ -18,12 +18,14 @@ from numpy.typing import NDArray
 from shlight import nodes
 from shlight.nodes import Shader, Vector
 from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_world, vector_to_world
-from shlight.nodes.rays import Ray, on_ray, with_vectors
-from shlight.nodes.values import Value, cross, dot, normalize
+from shlight.nodes.normals import near
+from shlight.nodes.rays import Ray, beside, on_ray, unfiltered, with_vectors
+from shlight.nodes.values import Value, cross, dot, length, normalize
 
 from ..compat import (
     BENDS_OLD_NORMAL,
     BENDS_VERTEX_NORMAL,
+    COMPARES_AT_MEAN_STEPS,
     DISPLACED_KEEP_CORNERS,
     DISPLACEMENT_FILTER_WIDTH,
     displacement_method,
@@ -109,15 +111,38 @@ def _bent(shader: Shader, socket: Any, offset: Vector, reader: TreeReader, *, as
     inputs.remark_bumps()
     width = DISPLACEMENT_FILTER_WIDTH
     if not as_undisplaced:
-        return shader.with_normal(nodes.bump(height, distance=scale, filter_width=width))
+        rises = _rises(unfiltered(height), {}, width)
+        return shader.with_normal(nodes.bump(height, distance=scale, rises=rises, filter_width=width))
     place = Vector(*nodes.attribute(UNDISPLACED))
     n = normalize(normal_to_object(nodes.normal()))
     if BENDS_OLD_NORMAL:
         n = normalize(Vector(*nodes.attribute(UNDISPLACED_NORMAL))) * (1.0 - 2.0 * nodes.backfacing())
     known = {"position": point_to_world(place), "normal": normalize(normal_to_world(n))}
-    height, scale = with_vectors((height, scale), known)
-    bent = nodes.bump(height, distance=scale, at=n, place=place, filter_width=width)
+    rises = _rises(unfiltered(height), known, width)
+    (scale,) = with_vectors((scale,), known)
+    bent = nodes.bump(height, distance=scale, at=n, place=place, rises=rises, filter_width=width)
     return shader.with_normal(normalize(normal_to_world(bent)))
+
+
+def _rises(height: Value, known: dict[str, Vector], width: float) -> tuple[Value, Value]:
+    """Returns how much higher a surface is beside the hit, in the picture's x and y, as Cycles has it.
+
+    known: the position and the normal before displacement, if others count. Cycles goes from that place along the
+    displaced face.
+    """
+    (here,) = with_vectors((height,), known)
+    vectors = dict.fromkeys(("near_x", "near_y"), known)
+    if known:
+        before, after = ([near(at, side, width) for side in vectors] for at in (known["position"], nodes.position()))
+        ratio = _lengths(before) / _lengths(after) if COMPARES_AT_MEAN_STEPS else 1.0
+        for side, along in zip(vectors, after, strict=True):
+            vectors[side] = known | {"position": known["position"] + along * ratio}
+    x, y = (beside(height, side, width, own) - here for side, own in vectors.items())
+    return x, y
+
+
+def _lengths(vectors: Sequence[Vector]) -> Value:
+    return length(vectors[0]) + length(vectors[1])
 
 
 def displace(

@@ -345,11 +345,9 @@ def _metallic(inputs: NodeInputs) -> Shader:
 def _glass(inputs: NodeInputs) -> Shader:
     inputs.remark_glass(inputs.node.bl_label)
     tint, ior, roughness = inputs.color("Color"), inputs.number("IOR"), _roughness(inputs)
-    bends = inputs.reader.surroundings.light_bounces and roughness.constant != 0.0
-    if bends and inputs.node.distribution in DISTRIBUTIONS:
-        inputs.remark(f"what goes through is bent by GGX, not by {inputs.node.distribution}", Effect.SLIGHT)
     if inputs.node.type == "BSDF_REFRACTION":
-        return nodes.refraction(tint, roughness, ior, at=inputs.linked_vector("Normal"))
+        kind = DISTRIBUTIONS.get(inputs.node.distribution, "ggx")
+        return nodes.refraction(tint, roughness, ior, distribution=kind, at=inputs.linked_vector("Normal"))
     _remark_unread(inputs, "Anisotropy")
     thin = _thin_film(inputs)
     _remark_film_inside(inputs, thin)

@@ -115,7 +115,7 @@ class ShaderProgram {
     std::size_t operation_count() const { return operations_; }
     /// Whether it takes differences between neighbours, or between places near by.
     bool takes_differences() const { return takes_differences_; }
-    /// How far those places are from the hit, in pixels: the least of its slopes' distances; 0: it has none.
+    /// How far those places are from the hit, in pixels: the greatest of its slopes' distances; 0: it has none.
     float slope_width() const { return slope_width_; }
 
     /// Working memory of evaluate(), which callers reuse.

@@ -59,7 +59,8 @@ struct ShadedRefraction {
     std::uint32_t alpha;
     std::uint32_t ior;  ///< of the body, relative to what is around it; not positive: 1
     std::optional<std::uint32_t> normal;
-    bool reflects = true;  ///< false: all light goes through that can, and no other is met
+    bool reflects = true;                         ///< false: all light goes through that can, and no other is met
+    Microfacets distribution = Microfacets::ggx;  ///< or Beckmann's
 };
 
 /// A number or colour that a program computes for an AOV.

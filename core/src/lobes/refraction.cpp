@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "lobes/microfacets.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
@@ -18,10 +19,29 @@ double hidden(double alpha, double cosine) {
     return (std::sqrt(1 + alpha * alpha * (1 - square) / square) - 1) / 2;
 }
 
+/// Smith's Λ of Beckmann's microfacets, by the rational approximation of Walter et al.
+double beckmann_hidden(double alpha, double cosine) {
+    const double a = std::abs(cosine) / (alpha * std::sqrt(std::max(1 - cosine * cosine, 0.0)));
+    return a < kUnmasked ? ((0.396 * a - 1.259) * a + 1) / ((2.181 * a + 3.535) * a) : 0.0;
+}
+
 /// G₂ ÷ G₁ of the viewer's side, with masking and shadowing by the same heights (Heitz 2014).
 double seen_share(double alpha, double view_cosine, double cosine) {
     const double seen = 1 + hidden(alpha, view_cosine);
     return seen / (seen + hidden(alpha, cosine));
+}
+
+/// The same with D G₂ of the interface's distribution ÷ D G₁ of GGX, by whose visible normals rays are drawn.
+double seen_share(const RoughInterface& interface, const Vec3d& half, double view_cosine, double cosine) {
+    const double alpha = interface.alpha;
+    if (interface.distribution == Microfacets::ggx || alpha == 0) {
+        return seen_share(alpha, view_cosine, cosine);
+    }
+    const double steepest = 100;  // of which there are next to none
+    const double slope = std::min((half.x * half.x + half.y * half.y) / (half.z * half.z * alpha * alpha), steepest);
+    const double normals = std::exp(-slope) * (1 + slope) * (1 + slope);
+    const double both = 1 + beckmann_hidden(alpha, view_cosine) + beckmann_hidden(alpha, cosine);
+    return normals * (1 + hidden(alpha, view_cosine)) / both;
 }
 
 }  // namespace
@@ -37,8 +57,8 @@ double interface_reflectance(double cosine, double ior) {
     return 0.5 * a * a * (1 + b * b);
 }
 
-InterfaceValue interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way,
-                               InterfaceReflection reflection) {
+InterfaceValue interface_value(const RoughInterface& interface, const Vec3d& view, const Vec3d& way) {
+    const auto& [alpha, ior, reflection, distribution] = interface;
     const bool reflected = way.z > 0;
     const Vec3d sum = reflected ? view + way : view + ior * way;
     const Vec3d half = glm::normalize(sum.z < 0 ? -sum : sum);
@@ -52,7 +72,7 @@ InterfaceValue interface_value(double alpha, double ior, const Vec3d& view, cons
     const double normals = alpha * alpha / (std::numbers::pi * across * across);
     const double visible = normals / (1 + hidden(alpha, view.z)) / view.z;
     const double spread = reflected ? 0.25 : std::abs(cosine * ior * ior * beyond) / glm::dot(sum, sum);
-    const double value = (reflected ? drawn : passed) * visible * seen_share(alpha, view.z, way.z) * spread;
+    const double value = (reflected ? drawn : passed) * visible * seen_share(interface, half, view.z, way.z) * spread;
     const double chosen = reflected                                  ? drawn
                           : reflection == InterfaceReflection::drawn ? passed
                           : reflectance < 1                          ? 1.0
@@ -61,15 +81,16 @@ InterfaceValue interface_value(double alpha, double ior, const Vec3d& view, cons
     return {value, is_drawn ? chosen * visible * spread : 0.0};
 }
 
-InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,
-                              InterfaceReflection reflection, double choice) {
+InterfaceRay sample_interface(const RoughInterface& interface, const Vec3d& view, const glm::dvec2& point,
+                              double choice) {
+    const auto& [alpha, ior, reflection, distribution] = interface;
     const Vec3d mirrored_way = sample_lobe(GgxShape{alpha}, view, point);
     const Vec3d normal = glm::normalize(view + mirrored_way);
     const double cosine = std::min(glm::dot(view, normal), 1.0);
     const double reflectance = interface_reflectance(cosine, ior);
     if (reflection == InterfaceReflection::drawn && choice < reflectance) {
         const bool above = mirrored_way.z > 0;
-        return {mirrored_way, above ? seen_share(alpha, view.z, mirrored_way.z) : 0.0, true};
+        return {mirrored_way, above ? seen_share(interface, normal, view.z, mirrored_way.z) : 0.0, true};
     }
     const double inside = 1 - (1 - cosine * cosine) / (ior * ior);
     if (inside <= 0) {
@@ -77,7 +98,7 @@ InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const
     }
     const Vec3d way = (cosine / ior - std::sqrt(inside)) * normal - view / ior;
     const double passed = reflection == InterfaceReflection::apart ? 1 - reflectance : 1.0;
-    return {way, way.z < 0 ? passed * seen_share(alpha, view.z, way.z) : 0.0, false};
+    return {way, way.z < 0 ? passed * seen_share(interface, normal, view.z, way.z) : 0.0, false};
 }
 
 }  // namespace shlight

@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -30,14 +31,21 @@ struct InterfaceValue {
     double density = 0;  ///< of sample_interface() [1/sr]
 };
 
+/// Microfacets between two bodies.
+struct RoughInterface {
+    double alpha;
+    double ior;  ///< of the body beyond, relative to that of the viewer
+    InterfaceReflection reflection;
+    Microfacets distribution = Microfacets::ggx;  ///< or Beckmann's
+};
+
 /// way: unit, in the shading frame; ior: not 1. As in Cycles, light is let through, too, by half vectors that no
 /// microfacet has, since it would be seen from behind: their density is 0.
-InterfaceValue interface_value(double alpha, double ior, const Vec3d& view, const Vec3d& way,
-                               InterfaceReflection reflection);
+InterfaceValue interface_value(const RoughInterface& interface, const Vec3d& view, const Vec3d& way);
 
-/// A direction through the interface. alpha: of its GGX distribution, whose visible normals the point draws; view:
-/// unit, in the xz-plane, above the horizon; choice: of reflection where it is drawn.
-InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,
-                              InterfaceReflection reflection, double choice);
+/// A direction through the interface, at a normal that the point draws of GGX's visible ones, whatever the
+/// distribution. view: unit, in the xz-plane, above the horizon; choice: of reflection where it is drawn.
+InterfaceRay sample_interface(const RoughInterface& interface, const Vec3d& view, const glm::dvec2& point,
+                              double choice);
 
 }  // namespace shlight

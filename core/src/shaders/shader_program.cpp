@@ -151,7 +151,7 @@ void ShaderProgram::find_places() {
         }
         takes_differences_ |= other > 0;
         if (other >= kFirstNear) {
-            slope_width_ = slope_width_ > 0 ? std::min(slope_width_, step.constant) : step.constant;
+            slope_width_ = std::max(slope_width_, step.constant);
         }
     }
 }
@@ -215,7 +215,9 @@ void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const
     if (const int other = other_place(step)) {
         const float* here = at(step.arguments[0], 0);
         const float* there = at(step.arguments[0], differs ? other : 0);
-        std::transform(there, there + count, here, at(first_value, 0), std::minus<>());
+        const float scale = other >= kFirstNear ? step.constant / slope_width_ : 1;
+        std::transform(there, there + count, here, at(first_value, 0),
+                       [scale](float a, float b) { return scale * (a - b); });
         return;
     }
     for (int place = 0; place < (differs ? kPlaces : 1); ++place) {

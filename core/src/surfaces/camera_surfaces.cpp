@@ -372,6 +372,13 @@ LobeShape CameraSurfaces::varied(const Surface& surface, const ShadedLobe& lobe,
     return with_form(lobe.shape, surface.filtered ? widened(lobe.shape, form, settings_.least_width) : form);
 }
 
+Terminator CameraSurfaces::terminator(const Surface& surface, const SurfaceLobe& own, const SurfacePoint& point) const {
+    Terminator result = scene_->placed().terminator(surface.hit, point);
+    result.smooth = own.smooth_normal(point);
+    result.glossy = is_glossy(own.shape);
+    return result;
+}
+
 /// Cycles' shadow of a bump is the same for a smooth normal and its opposite.
 Vec3d CameraSurfaces::leaning(const Surface& surface, const ShadedLobe& lobe, const Vec3d& own) const {
     const Vec3d smooth = normal(surface, lobe.leans_from);
@@ -441,9 +448,9 @@ void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hit
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
             const ShadingFrame frame = frame_of(surface, own);
             const SurfacePoint point = own.lit_side(surface.point);
-            hits.add(point, scene_->placed().terminator(surface.hit, point), frame,
-                     view_cosine(frame.z, view_of(surface, own)), weights_, forms_, rays_[surface.ray].sample,
-                     surface.kind, static_cast<std::uint32_t>(sink.in_apart(surface, surface.bounces)));
+            hits.add(point, terminator(surface, own, point), frame, view_cosine(frame.z, view_of(surface, own)),
+                     weights_, forms_, rays_[surface.ray].sample, surface.kind,
+                     static_cast<std::uint32_t>(sink.in_apart(surface, surface.bounces)));
         }
     }
 }

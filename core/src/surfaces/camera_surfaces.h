@@ -94,6 +94,11 @@ struct SurfaceLobe {
     bool is_bumped() const { return leans_from != Vec3d(0); }
     /// The point as the side has it from which it takes light.
     SurfacePoint lit_side(const SurfacePoint& point) const { return translucent ? point.turned() : point; }
+    /// The normal that a displacement has bent, as far as diffuse lobes tell it. point: of lit_side().
+    Vec3d smooth_normal(const SurfacePoint& point) const {
+        const Vec3d& own = is_bumped() ? leans_from : is_glossy(shape) ? point.shading_normal : normal;
+        return glm::dot(own, point.shading_normal) < 0 ? -own : own;
+    }
 };
 
 /// Keeps its memory from batch to batch; one per thread.
@@ -334,6 +339,8 @@ class CameraSurfaces {
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
     /// A shape as it lies on the surface, see PlacedMeshes::azimuth().
     LobeShape laid_out(const Surface& surface, const LobeShape& shape) const;
+    /// point: of own.lit_side().
+    Terminator terminator(const Surface& surface, const SurfaceLobe& own, const SurfacePoint& point) const;
     /// SurfaceLobe::leans_from of a bump. own: its normal.
     Vec3d leaning(const Surface& surface, const ShadedLobe& lobe, const Vec3d& own) const;
     /// The shape of a shader's lobe whose width varies. normal: of the lobe.
@@ -347,8 +354,7 @@ class CameraSurfaces {
                  const Division& division, const Sink& sink);
     /// An interface, as one path meets it.
     struct Interface {
-        double alpha, ior;
-        InterfaceReflection reflection;
+        RoughInterface shape;
         ShadingFrame frame;
         Vec3d view;  ///< in the frame
 

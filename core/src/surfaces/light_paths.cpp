@@ -98,7 +98,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
 }
 
 bool CameraSurfaces::Interface::is_rough() const {
-    return alpha > kSmooth && std::abs(ior - 1) > kNoBend;
+    return shape.alpha > kSmooth && std::abs(shape.ior - 1) > kNoBend;
 }
 
 /// A bend of the normal away from the viewer's side of the surface counts as none.
@@ -114,11 +114,13 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
                                                : InterfaceReflection::apart;
     const double alpha =
         std::max(double{width(surface, refraction.alpha)}, surface.filtered ? settings_.least_width : 0.0);
-    const Interface interface = {alpha, ior(surface, refraction), reflection, frame,
+    const Interface interface = {{alpha, ior(surface, refraction), reflection, refraction.distribution},
+                                 frame,
                                  in_frame(view_cosine(frame.z, surface.towards_viewer))};
     const Rgb weight = surface.throughput * color(surface, refraction.weight) / static_cast<float>(division.paths);
-    const double passed =
-        reflection == InterfaceReflection::apart ? 1 - interface_reflectance(interface.view.z, interface.ior) : 1.0;
+    const double passed = reflection == InterfaceReflection::apart
+                              ? 1 - interface_reflectance(interface.view.z, interface.shape.ior)
+                              : 1.0;
     const auto chance =
         static_cast<float>(std::clamp(passed * average(color(surface, refraction.weight)), kLeastChance, 1.0));
     const std::uint32_t sample = rays_[surface.ray].sample * division.paths + division.path;
@@ -126,7 +128,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
         return surface
             .next(RaySource::mirror, reflected ? PathKind::glossy : PathKind::transmission, !reflected, share, way)
             .from(scene_->materials()[surface.point.material])
-            .drawn(interface.alpha > kSmooth, division.is_broad);
+            .drawn(interface.shape.alpha > kSmooth, division.is_broad);
     };
     if (interface.is_rough()) {
         const ShadingFrame behind = shading_frame(surface.point.position, -frame.z, -frame.z);
@@ -135,9 +137,8 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
             add_drawn_lamps(surface, interface, frame, path(true, weight, {}), hash(seed, ~kLampSeed), sample, sink);
         }
     }
-    const InterfaceRay sampled =
-        sample_interface(interface.alpha, interface.ior, interface.view, SobolSequence(seed).point(sample), reflection,
-                         sobol_beyond(sample, seed).x);
+    const InterfaceRay sampled = sample_interface(interface.shape, interface.view, SobolSequence(seed).point(sample),
+                                                  sobol_beyond(sample, seed).x);
     const Vec3d way = frame.to_world(sampled.way);
     if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
         return;
@@ -148,8 +149,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     Segment on = path(sampled.reflected, weight * static_cast<float>(sampled.weight), next);
     on.chance *= chance;
     if (interface.is_rough()) {
-        on.density = number_of_draws() *
-                     interface_value(interface.alpha, interface.ior, interface.view, sampled.way, reflection).density;
+        on.density = number_of_draws() * interface_value(interface.shape, interface.view, sampled.way).density;
     }
     start(on, next);
 }
@@ -181,8 +181,7 @@ void CameraSurfaces::add_drawn_lamps(const Surface& surface, const Interface& in
         if (glm::dot(way, point.geometric_normal) <= 0) {
             continue;
         }
-        const InterfaceValue own = interface_value(interface.alpha, interface.ior, interface.view,
-                                                   interface.frame.to_local(way), interface.reflection);
+        const InterfaceValue own = interface_value(interface.shape, interface.view, interface.frame.to_local(way));
         // Rays see no lamps without shadows.
         const double part = traits.casts_shadows ? drawn_part(lamps[i], origin, share * own.density) : 1.0;
         Rgb light = path.throughput * lamp->light * static_cast<float>(own.value * part * share);
@@ -252,14 +251,14 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uin
     if (!(density > 0) || glm::dot(point.geometric_normal, direction) <= 0) {
         return;
     }
-    const Terminator terminator = scene_->placed().terminator(surface.hit, point);
-    weight *= surface.throughput * static_cast<float>(terminator.let_in(way.z) / density / division.paths);
+    const Terminator lifted = terminator(surface, own, point);
+    weight *= surface.throughput * static_cast<float>(lifted.let_in(way.z) / density / division.paths);
     const auto share = static_cast<float>(average(weight));
     const float probability = std::min(share / (division.is_broad ? kSurelyFollowedToCells : kSurelyFollowed), 1.0F);
     if (sobol_beyond(number, seed).x >= double{probability}) {
         return;
     }
-    const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
+    const Vec3d lift = lifted.lifts() ? lifted.share(direction) * lifted.lift : Vec3d(0);
     const Ray scattered = {Vec3f(point.off_surface() + lift), 0, Vec3f(direction)};
     start(surface.next(RaySource::scattered, kind_of(own.shape), own.translucent, weight / probability, scattered)
               .drawn(true, division.is_broad, density < kFiltered * settings_.filter_glossy),

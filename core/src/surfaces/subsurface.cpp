@@ -103,7 +103,7 @@ Vec3d CameraSurfaces::way_below(const Surface& surface, const ShadedSubsurface& 
     const double cosine = view_cosine(frame.z, surface.towards_viewer);
     const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
     const double ior = result(surface, own.numbers + 10);
-    return sample_interface(alpha, ior, view, point, InterfaceReflection::none, 0).way;
+    return sample_interface({alpha, ior, InterfaceReflection::none}, view, point, 0).way;
 }
 
 /// Along the normal or across, so that curved surfaces are found, too (King et al. 2013, "BSSRDF Importance Sampling").

@@ -20,12 +20,16 @@ struct Terminator {
     Vec3d smooth{0}, geometric{0};  ///< unit normals of both, on the viewer's side
     double cutoff = 0;              ///< cosine of the light below which rays start on the smooth surface; 0: none does
     double frequency = 1;           ///< light ends at an angle of π / 2 ÷ this to the normal
+    bool glossy = false;            ///< rays below the smooth surface's horizon start on the triangle
 
     bool lifts() const { return cutoff > 0; }
     /// How much of the lift a ray has, 0 … 1. direction: unit, towards the light.
     double share(const Vec3d& direction) const {
         const double above_smooth = glm::dot(smooth, direction);
         const double above_flat = glm::dot(geometric, direction);
+        if (glossy && above_smooth < 0) {
+            return 0;
+        }
         const double least = above_smooth < cutoff ? above_smooth + above_flat - cutoff : above_flat;
         return std::clamp(1 - least / cutoff, 0.0, 1.0);
     }

@@ -346,8 +346,8 @@ def glass(
 ) -> Shader:
     """A transparent body: Blender's Glass BSDF. It shows what is behind where light bounces.
 
-    What goes through is bent by GGX's microfacets, whatever the distribution. thin_film_thickness: [nm], of a film
-    outside of the body.
+    What goes through is bent by Beckmann's microfacets, or else GGX's, whatever the distribution.
+    thin_film_thickness: [nm], of a film outside of the body.
     """
     kind = checked_distribution(distribution)
     c = clamped(color(tint, "tint"))
@@ -359,11 +359,21 @@ def glass(
         thin = thin._replace(below=index)
     several: dict[str, Any] = {"several_bounces": several_bounces, "distribution": kind}
     front, passed = interface_lobes(c, color(head_on(index)), index, r, n, tint=c, thin=thin, **several)
-    return front + Shader(refractions=(Refraction(color(c * passed), r * r, index, at),))
+    through = Refraction(color(c * passed), r * r, index, at, is_beckmann=kind == "beckmann")
+    return front + Shader(refractions=(through,))
 
 
-def refraction(tint: Varying, roughness: Number, ior: Number = 1.5, *, at: Vector | None = None) -> Shader:
-    """The light that goes through an interface alone: Blender's Refraction BSDF."""
+def refraction(
+    tint: Varying,
+    roughness: Number,
+    ior: Number = 1.5,
+    *,
+    distribution: Distribution = "ggx",
+    at: Vector | None = None,
+) -> Shader:
+    """The light that goes through an interface alone: Blender's Refraction BSDF. distribution: see glass()."""
+    is_beckmann = checked_distribution(distribution) == "beckmann"
     r = clamp(number(roughness, "roughness"))
     index = maximum(number(ior, "ior"), 1e-5)
-    return Shader(refractions=(Refraction(clamped(color(tint, "tint")), r * r, index, at, reflects=False),))
+    weight = clamped(color(tint, "tint"))
+    return Shader(refractions=(Refraction(weight, r * r, index, at, reflects=False, is_beckmann=is_beckmann),))

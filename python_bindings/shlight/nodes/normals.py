@@ -12,7 +12,7 @@ from shlight.nodes.inputs import (
     position,
 )
 from shlight.nodes.mathematics import sign
-from shlight.nodes.rays import on_ray
+from shlight.nodes.rays import on_ray, unfiltered
 from shlight.nodes.values import (
     Number,
     Value,
@@ -75,6 +75,11 @@ def normal_map(
     return choose(equal(length(bent), 0.0), normal(), bent)
 
 
+def near(place: Vector, side: str, width: float) -> Vector:
+    """How far the surface goes within `width` pixels, to the side "near_x" or "near_y" of the hit."""
+    return Vector(*(operation(side, component, data=width) for component in place))
+
+
 def bump(
     height: Number,
     strength: Number = 1.0,
@@ -82,6 +87,7 @@ def bump(
     *,
     at: Vector | None = None,
     place: Vector | None = None,
+    rises: tuple[Value, Value] | None = None,
     invert: bool = False,
     filter_width: float = 0.1,
 ) -> Vector:
@@ -89,19 +95,21 @@ def bump(
 
     at, place: the normal before, and where the hit is, in the frame of the normal that is returned; None: the smooth
         normal and the position in the world.
-    filter_width: the distance over which heights are compared, in pixels; of a material's bumps the least counts.
+    rises: by how much the surface is higher beside the hit, in x and in y of the picture; None: as the height is there.
+    filter_width: the distance over which heights are compared, in pixels; of a material's bumps the greatest counts.
     """
     width = number(filter_width, "filter_width", 1e-3, 1e3).constant
     if width is None:
         raise ValueError("filter_width must be a number, got an expression")
     before = normal() if at is None else at
     here = position() if place is None else place
-    dx = Vector(*(operation("near_x", component, data=width) for component in here))
-    dy = Vector(*(operation("near_y", component, data=width) for component in here))
+    dx, dy = near(here, "near_x", width), near(here, "near_y", width)
     rx, ry = cross(dy, before), cross(before, dx)
     determinant = dot(dx, rx)
-    (h,) = on_ray([number(height)], None, filtered=False)
-    slope = rx * operation("near_x", h, data=width) + ry * operation("near_y", h, data=width)
+    if rises is None:
+        h = unfiltered(number(height))
+        rises = (operation("near_x", h, data=width), operation("near_y", h, data=width))
+    slope = rx * rises[0] + ry * rises[1]
     scale = -number(distance) if invert else number(distance)
     s: Value = maximum(strength, 0.0)
     raised = normalize(before * abs(determinant) - slope * (scale * sign(determinant)))

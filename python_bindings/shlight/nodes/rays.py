@@ -7,7 +7,19 @@ from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from typing import Any
 
-from shlight.nodes.values import Color, Step, Value, Vector, arithmetic, in_order, number, operations, select, steps
+from shlight.nodes.values import (
+    Color,
+    Step,
+    Value,
+    Vector,
+    arithmetic,
+    in_order,
+    number,
+    operation,
+    operations,
+    select,
+    steps,
+)
 
 FOOTPRINTS = frozenset(f"footprint{count}" for count in range(1, 5))  # operations that noise is filtered by
 
@@ -51,8 +63,25 @@ def unfiltered(value: Value) -> Value:
 
 def with_vectors(values: Iterable[Value], vectors: Mapping[str, Vector]) -> list[Value]:
     """Expressions that read other vectors in the place of some sources, "position" for instance."""
-    known: dict[Any, Value] = {(source, 0, i): c for source, own in vectors.items() for i, c in enumerate(own)}
+    known = _by_source(vectors)
     return _replaced(values, lambda step: known.get(step.data) if step.name == "input" else None)
+
+
+def beside(value: Value, side: str, width: float, vectors: Mapping[str, Vector]) -> Value:
+    """A number as it is `width` pixels to the side "near_x" or "near_y" of the hit, where some sources are these."""
+    known = _by_source(vectors)
+
+    def moved(step: Step) -> Value | None:
+        if step.name != "input":
+            return None
+        here = Value(step)
+        return known[step.data] if step.data in known else here + operation(side, here, data=width)
+
+    return _replaced([value], moved)[0]
+
+
+def _by_source(vectors: Mapping[str, Vector]) -> dict[Any, Value]:
+    return {(source, 0, i): c for source, own in vectors.items() for i, c in enumerate(own)}
 
 
 def _replaced(values: Iterable[Value], replace: Replace, *, filtered: bool = True) -> list[Value]:

@@ -95,6 +95,7 @@ class Refraction:
     ior: Value  # of the body
     normal: Vector | None = None  # None: the smooth one
     reflects: bool = True  # False: all light goes through that can
+    is_beckmann: bool = False  # its microfacets, else those of GGX
 
 
 _Below: TypeAlias = tuple[int, int] | None
@@ -107,7 +108,7 @@ class _Listed(NamedTuple):
     camera: ProgramBuilder
     shadow: ProgramBuilder
     surface: tuple[list[_ListedLobe], int | None, int | None]
-    rest: tuple[list[tuple[str, int, bool]], list[tuple[int, int, int, int | None, bool]]]
+    rest: tuple[list[tuple[str, int, bool]], list[tuple[int, int, int, int | None, bool, bool]]]
 
 
 @dataclass(frozen=True)
@@ -285,7 +286,7 @@ class Shader:
             weight = listed(*own.weight)
             alpha, ior = (listed(value, filtered=True) for value in (own.alpha, own.ior))
             bent = None if own.normal is None else listed(*own.normal, filtered=True)
-            refractions.append((weight, alpha, ior, bent, own.reflects))
+            refractions.append((weight, alpha, ior, bent, own.reflects, own.is_beckmann))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
         return _Listed(builder, shadows, (lobes, glow_result, through), (aovs, refractions))
