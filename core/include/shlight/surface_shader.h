@@ -48,8 +48,9 @@ struct ShadedLobe {
     bool translucent = false;             ///< it reflects light from the other side than the viewer's, and is diffuse
     std::shared_ptr<const ViewWeight> view_weight;  ///< another factor; null: 1
     int only_order = 0;                             ///< see Lobe
-    std::optional<std::uint32_t> leans_from;        ///< of bumped lobes: the smooth normal, likewise
-    std::optional<ShadedSubsurface> subsurface;     ///< the lobe is then Lambert's, or the one by which light enters
+    /// The normal that a bump leans from, likewise; by it shadow rays start on the smooth surface.
+    std::optional<std::uint32_t> leans_from;
+    std::optional<ShadedSubsurface> subsurface;  ///< the lobe is then Lambert's, or the one by which light enters
 };
 
 /// An interface to a transparent body that the mesh's front side bounds: light that bounces goes on through it, and

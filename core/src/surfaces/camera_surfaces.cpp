@@ -374,7 +374,9 @@ LobeShape CameraSurfaces::varied(const Surface& surface, const ShadedLobe& lobe,
 
 Terminator CameraSurfaces::terminator(const Surface& surface, const SurfaceLobe& own, const SurfacePoint& point) const {
     Terminator result = scene_->placed().terminator(surface.hit, point);
-    result.smooth = own.smooth_normal(point);
+    if (own.smooth != Vec3d(0)) {
+        result.smooth = glm::dot(own.smooth, point.shading_normal) < 0 ? -own.smooth : own.smooth;
+    }
     result.glossy = is_glossy(own.shape);
     return result;
 }
@@ -401,9 +403,10 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             const LobeShape shape =
                 lobe.alpha ? varied(surface, lobe, own) : laid_out(surface, fixed[lobes.size()].shape);
             const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
+            const bool bumped = is_bumped(shape);
+            const Vec3d before = bumped || lobe.leans_from ? leaning(surface, lobe, own) : Vec3d(0);
             lobes.push_back({shape, lobe.translucent ? -own : own, weight * color(surface, lobe.weight),
-                             lobe.several_bounces, lobe.translucent,
-                             is_bumped(shape) ? leaning(surface, lobe, own) : Vec3d(0)});
+                             lobe.several_bounces, lobe.translucent, bumped ? before : Vec3d(0), before});
         }
         return;
     }

@@ -89,16 +89,12 @@ struct SurfaceLobe {
     bool several_bounces = false;  ///< see ShadedLobe
     bool translucent = false;      ///< see ShadedLobe
     Vec3d leans_from{0};           ///< of a bump, the smooth normal; 0: the lobe is none of a bump
+    Vec3d smooth{0};               ///< the same of any lobe, where it is not the point's
 
     Vec3d viewers_normal() const { return translucent ? -normal : normal; }
     bool is_bumped() const { return leans_from != Vec3d(0); }
     /// The point as the side has it from which it takes light.
     SurfacePoint lit_side(const SurfacePoint& point) const { return translucent ? point.turned() : point; }
-    /// The normal that a displacement has bent, as far as diffuse lobes tell it. point: of lit_side().
-    Vec3d smooth_normal(const SurfacePoint& point) const {
-        const Vec3d& own = is_bumped() ? leans_from : is_glossy(shape) ? point.shading_normal : normal;
-        return glm::dot(own, point.shading_normal) < 0 ? -own : own;
-    }
 };
 
 /// Keeps its memory from batch to batch; one per thread.

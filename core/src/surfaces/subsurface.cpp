@@ -218,7 +218,8 @@ void CameraSurfaces::find_exit_lobes(const Surface& surface, const SurfaceShader
             weight = color(surface, lobe.weight) / glm::max(color(surface, exit.weight), Rgb(1e-30F));
         }
         const bool leans = is_bumped(lobe.shape) && weight != Rgb(0);
-        lobes.push_back({lobe.shape, own, weight, false, false, leans ? leaning(surface, lobe, own) : Vec3d(0)});
+        const Vec3d before = leans || lobe.leans_from ? leaning(surface, lobe, own) : Vec3d(0);
+        lobes.push_back({lobe.shape, own, weight, false, false, leans ? before : Vec3d(0), before});
     }
 }
 

@@ -78,7 +78,7 @@ class Lobe:
     ior: float = 1.5  # of "ggx_dielectric"
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
     rest: tuple[Value, ...] = ()  # what follows alpha of a shape with more numbers, in the order of `ShadedLobe::alpha`
-    leans_from: Vector | None = None  # of LAMBERT_PARTS, the smooth normal; None: the interpolated one
+    leans_from: Vector | None = None  # the smooth normal; None: the interpolated one
     bump_shadow: BumpShadow = "ggx"  # of LAMBERT_PARTS that lean from it
     below: Subsurface | None = None  # light comes out of the body, and this is by what it enters
 
@@ -183,7 +183,7 @@ class Shader:
             below = lobe.below
             if below is not None:
                 below = replace(below, numbers=tuple(own(value) for value in below.numbers))
-            before = own_normal(lobe.leans_from) if lobe.kind in LAMBERT_PARTS else None
+            before = own_normal(lobe.leans_from)
             rest = tuple(own(value) for value in lobe.rest)
             return replace(turned(lobe), rest=rest, leans_from=before, below=below)
 
@@ -330,9 +330,8 @@ def _shadowed_by_bumps(lobe: Lobe) -> tuple[Lobe, ...]:
         away = 1.0 - clamp(dot(towards_viewer(), n))
         own = own * (1.0 - 0.5 * (away * away * away * away * away))
     below = None if lobe.below is None else lobe.below.exit_only
-    plain = replace(lobe, leans_from=None)
-    less = replace(plain, kind="lambert", weight=color(own * -1.0), below=below)
-    return plain, less, replace(lobe, kind=f"bumped_lambert_{lobe.bump_shadow}", weight=color(own), below=below)
+    less = replace(lobe, kind="lambert", weight=color(own * -1.0), below=below)
+    return lobe, less, replace(lobe, kind=f"bumped_lambert_{lobe.bump_shadow}", weight=color(own), below=below)
 
 
 def _identity(value: Value | None) -> Any:
