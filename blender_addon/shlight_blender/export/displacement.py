@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from shlight import nodes
 from shlight.nodes import Shader, Vector
 from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_world, vector_to_world
-from shlight.nodes.normals import near
+from shlight.nodes.normals import near, raised
 from shlight.nodes.rays import Ray, beside, on_ray, unfiltered, with_vectors
 from shlight.nodes.values import Value, cross, dot, length, normalize
 
@@ -112,7 +112,7 @@ def _bent(shader: Shader, socket: Any, offset: Vector, reader: TreeReader, *, as
     width = DISPLACEMENT_FILTER_WIDTH
     if not as_undisplaced:
         rises = _rises(unfiltered(height), {}, width)
-        return shader.with_normal(nodes.bump(height, distance=scale, rises=rises, filter_width=width))
+        return shader.with_normal(raised(rises, scale, nodes.normal(), nodes.position(), width))
     place = Vector(*nodes.attribute(UNDISPLACED))
     n = normalize(normal_to_object(nodes.normal()))
     if BENDS_OLD_NORMAL:
@@ -120,8 +120,7 @@ def _bent(shader: Shader, socket: Any, offset: Vector, reader: TreeReader, *, as
     known = {"position": point_to_world(place), "normal": normalize(normal_to_world(n))}
     rises = _rises(unfiltered(height), known, width)
     (scale,) = with_vectors((scale,), known)
-    bent = nodes.bump(height, distance=scale, at=n, place=place, rises=rises, filter_width=width)
-    return shader.with_normal(normalize(normal_to_world(bent)))
+    return shader.with_normal(normalize(normal_to_world(raised(rises, scale, n, place, width))))
 
 
 def _rises(height: Value, known: dict[str, Vector], width: float) -> tuple[Value, Value]:

@@ -74,15 +74,9 @@ class LobeAxes {
     }
     /// G₁ / (4 cosθ_o) with G₁ = 2 cosθ_o / (cosθ_o + masking): cosθ_o cancels, so grazing angles are finite.
     double visible_share(const Vec3d& wo) const { return 0.5 / (wo.z + masking(wo)); }
-    /// cosθ (1 + 2 Λ) of Beckmann's distribution, with Λ = 0 where tanθ < 1/(1.6 α); as a quotient it is finite for
-    /// grazing angles.
+    /// cosθ (1 + 2 Λ) of Beckmann's distribution.
     double beckmann_masking(const Vec3d& v) const {
-        const double across = std::hypot(x_ * v.x, y_ * v.y);
-        if (v.z >= kUnmasked * across) {
-            return v.z;
-        }
-        const double a = v.z / across;
-        return v.z + 2 * across * ((0.396 * a - 1.259) * a + 1) / (2.181 * a + 3.535);
+        return v.z + 2 * beckmann_hidden(std::hypot(x_ * v.x, y_ * v.y), v.z);
     }
 
   private:

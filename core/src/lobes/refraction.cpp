@@ -19,12 +19,6 @@ double hidden(double alpha, double cosine) {
     return (std::sqrt(1 + alpha * alpha * (1 - square) / square) - 1) / 2;
 }
 
-/// Smith's Λ of Beckmann's microfacets, by the rational approximation of Walter et al.
-double beckmann_hidden(double alpha, double cosine) {
-    const double a = std::abs(cosine) / (alpha * std::sqrt(std::max(1 - cosine * cosine, 0.0)));
-    return a < kUnmasked ? ((0.396 * a - 1.259) * a + 1) / ((2.181 * a + 3.535) * a) : 0.0;
-}
-
 /// G₂ ÷ G₁ of the viewer's side, with masking and shadowing by the same heights (Heitz 2014).
 double seen_share(double alpha, double view_cosine, double cosine) {
     const double seen = 1 + hidden(alpha, view_cosine);
@@ -40,7 +34,10 @@ double seen_share(const RoughInterface& interface, const Vec3d& half, double vie
     const double steepest = 100;  // of which there are next to none
     const double slope = std::min((half.x * half.x + half.y * half.y) / (half.z * half.z * alpha * alpha), steepest);
     const double normals = std::exp(-slope) * (1 + slope) * (1 + slope);
-    const double both = 1 + beckmann_hidden(alpha, view_cosine) + beckmann_hidden(alpha, cosine);
+    double both = 1;
+    for (const double side : {view_cosine, std::abs(cosine)}) {
+        both += beckmann_hidden(alpha * std::sqrt(std::max(1 - side * side, 0.0)), side) / side;
+    }
     return normals * (1 + hidden(alpha, view_cosine)) / both;
 }
 

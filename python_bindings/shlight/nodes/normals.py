@@ -87,7 +87,6 @@ def bump(
     *,
     at: Vector | None = None,
     place: Vector | None = None,
-    rises: tuple[Value, Value] | None = None,
     invert: bool = False,
     filter_width: float = 0.1,
 ) -> Vector:
@@ -95,23 +94,29 @@ def bump(
 
     at, place: the normal before, and where the hit is, in the frame of the normal that is returned; None: the smooth
         normal and the position in the world.
-    rises: by how much the surface is higher beside the hit, in x and in y of the picture; None: as the height is there.
     filter_width: the distance over which heights are compared, in pixels; of a material's bumps the greatest counts.
     """
     width = number(filter_width, "filter_width", 1e-3, 1e3).constant
     if width is None:
         raise ValueError("filter_width must be a number, got an expression")
-    before = normal() if at is None else at
-    here = position() if place is None else place
-    dx, dy = near(here, "near_x", width), near(here, "near_y", width)
+    h = unfiltered(number(height))
+    rises = (operation("near_x", h, data=width), operation("near_y", h, data=width))
+    scale = -number(distance) if invert else number(distance)
+    before, here = normal() if at is None else at, position() if place is None else place
+    return raised(rises, scale, before, here, width, maximum(strength, 0.0))
+
+
+def raised(
+    rises: tuple[Value, Value], scale: Value, before: Vector, place: Vector, width: float, s: Number = 1.0
+) -> Vector:
+    """The normal of a surface that rises by this, times a scale, within `width` pixels in x and in y of the picture.
+
+    before, place: see bump(); s: how much of it is mixed with the normal before.
+    """
+    dx, dy = near(place, "near_x", width), near(place, "near_y", width)
     rx, ry = cross(dy, before), cross(before, dx)
     determinant = dot(dx, rx)
-    if rises is None:
-        h = unfiltered(number(height))
-        rises = (operation("near_x", h, data=width), operation("near_y", h, data=width))
     slope = rx * rises[0] + ry * rises[1]
-    scale = -number(distance) if invert else number(distance)
-    s: Value = maximum(strength, 0.0)
-    raised = normalize(before * abs(determinant) - slope * (scale * sign(determinant)))
-    flat = equal(length(raised), 0.0)
-    return choose(flat, before, normalize(raised * s + before * (1.0 - s)))
+    whole = normalize(before * abs(determinant) - slope * (scale * sign(determinant)))
+    flat = equal(length(whole), 0.0)
+    return choose(flat, before, normalize(whole * s + before * (1.0 - s)))
