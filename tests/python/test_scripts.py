@@ -10,7 +10,11 @@ import numpy as np
 import pytest
 
 from shlight import nodes
+from shlight.nodes import script_reuse
+from shlight.nodes.inputs import SOURCES
 from shlight.nodes.program import ProgramBuilder
+from shlight.nodes.script_registers import Registers
+from shlight.nodes.values import steps
 
 HEAD = "OpenShadingLanguage 1.00\nshader s\n"
 SYMBOLS = """param float x 0 %read{0,0}
@@ -90,3 +94,87 @@ def test_inputs_are_checked() -> None:
     for given in ({"nothing": 1.0}, {"y": 1.0}, {"x": "wide"}, {"x": np.nan}, {"c": (1.0, 2.0)}):
         with pytest.raises(ValueError, match=next(iter(given))):
             nodes.osl(script("mul y x $half"), **given)
+
+
+class RandomScript(Registers):
+    """A script of random instructions, branches and loops, which repeats terms and copies them about."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        super().__init__()
+        self.rng = rng
+        self.arguments = [self.reserve([0.0]) for _ in range(2)]
+        self.variables = [self.reserve([float(i % 3)]) for i in range(12)]
+        self.terms = [self.temporary()]
+        self.results = self.variables[3:7]
+        self.fixed = [self.constant(value) for value in (0.0, 0.5, 0.5, -2.0)]
+        self.indices = [self.constant(value, is_int=True) for value in (0.0, 3.0, 9.0)]
+        self.block(0)
+
+    def any(self, registers: list[int]) -> int:
+        return int(self.rng.choice(registers))
+
+    def block(self, depth: int) -> None:
+        for _ in range(self.rng.integers(3, 14)):
+            kind = self.rng.integers(15 if depth < 3 else 13)
+            known = [*self.variables, *self.arguments, *self.fixed, *self.terms[-3:]]
+            a, b = self.any(known), self.any(known)
+            to, wide = self.any([*self.variables, *self.terms[-2:]]), self.any(self.variables[:10])
+            if kind < 6:
+                self.emit(str(self.rng.choice(["add", "sub", "mul", "max"])), to, a, b)
+            elif kind < 8:
+                self.emit("copy" if kind == 6 else "sin", to, a)
+            elif kind == 8:
+                self.emit("load", to, self.variables[2], self.any(self.indices), 4)
+            elif kind == 9:
+                self.emit("store", self.variables[2], self.any(self.indices), a, 4)
+            elif kind == 10:
+                self.emit("dot", to, wide, self.variables[8])
+            elif kind == 11:
+                self.emit("hsv_to_rgb", wide, self.any(self.variables[:10]))
+            elif kind == 12:
+                self.terms.append(self.made("mul", a, b))
+                self.emit("copy", to, self.terms[-1])
+            else:
+                self.nested(depth, a, is_loop=kind == 13)
+
+    def nested(self, depth: int, condition: int, *, is_loop: bool) -> None:
+        counter = self.temporary()
+        self.emit("copy", counter, self.fixed[0])
+        start = len(self.code)
+        condition = self.made(
+            "less", *((counter, self.constant(3.0)) if is_loop else (self.any(self.fixed), condition))
+        )
+        for _ in range(2 if is_loop else self.rng.integers(4)):
+            condition = self.made("int_equal", condition, self.indices[0])
+        branch = len(self.code)
+        self.emit("jump_unless", 0, condition)
+        self.block(depth + 1)
+        if is_loop:
+            self.emit("add", counter, counter, self.constant(1.0))
+            self.emit("jump", start)
+        self.code[branch][1] = len(self.code)
+
+    def found(self, places: np.ndarray) -> np.ndarray:
+        """The results of hits at these places."""
+        core = self.core(len(self.arguments), self.results, self.variables[:8])
+        builder = ProgramBuilder()
+        builder.result(list(steps("script", nodes.position().x, nodes.position().y, data=core)))
+        inputs = [((SOURCES["position"], 0, i), np.tile(places[i], (3, 1))) for i in range(2)]
+        return np.asarray(builder.program().evaluate(inputs, places.shape[1]))
+
+
+def test_what_is_left_out_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Scripts without the instructions that are not needed give the same numbers; hits part, end and wait."""
+    rng = np.random.default_rng(7)
+    places = rng.normal(size=(2, 75)).astype(np.float32)
+    lengths = []
+    for _ in range(200):
+        script = RandomScript(rng)
+        monkeypatch.setattr(script_reuse, "MOST_INSTRUCTIONS", 20_000)
+        found = script.found(places)
+        lengths.append(len(script.core(2, script.results, script.variables).code) / (20 * len(script.code)))
+        monkeypatch.setattr(script_reuse, "MOST_INSTRUCTIONS", 0)
+        np.testing.assert_array_equal(found, script.found(places))
+        one_by_one = [script.found(places[:, i : i + 1]) for i in range(0, 75, 9)]
+        np.testing.assert_array_equal(found[:, ::9], np.concatenate(one_by_one, axis=1))
+    assert np.mean(lengths) < 0.95, "of the instructions are left"

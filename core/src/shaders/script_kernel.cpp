@@ -17,6 +17,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/checks.h"
@@ -27,11 +28,12 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
+namespace hn = hwy::HWY_NAMESPACE;
 using Word = std::uint32_t;
 using Integer = std::int32_t;
 
 /// Hits that a script runs for at the same time.
-constexpr std::size_t kHits = 16;
+constexpr std::size_t kHits = 32;
 template <class T>
 struct alignas(kHits * sizeof(T)) PerHit : std::array<T, kHits> {};
 
@@ -42,7 +44,6 @@ constexpr Word kYes = ~0U;
 struct Machine {
     PerHit<Word>* registers;
     PerHit<Word> active;
-    bool are_all_active;
 };
 
 struct Instruction;
@@ -70,14 +71,12 @@ Word word(T value) {
 }
 
 /// Gives active hits their values.
-void keep(const Machine& machine, Word to, const PerHit<Word>& values) {
+HWY_INLINE void keep(const Machine& machine, Word to, const PerHit<Word>& values) {
+    const hn::CappedTag<Word, kHits> d;
     PerHit<Word>& kept = machine.registers[to];
-    if (machine.are_all_active) {
-        kept = values;
-        return;
-    }
-    for (std::size_t hit = 0; hit < kHits; ++hit) {
-        kept[hit] = machine.active[hit] != 0 ? values[hit] : kept[hit];
+    for (std::size_t hit = 0; hit < kHits; hit += hn::Lanes(d)) {
+        const auto active = hn::Load(d, &machine.active[hit]);
+        hn::Store(hn::IfVecThenElse(active, hn::Load(d, &values[hit]), hn::Load(d, &kept[hit])), d, &kept[hit]);
     }
 }
 
@@ -328,80 +327,100 @@ std::vector<Instruction> instructions(const ShaderScript& script) {
 /// Keeps the place of each hit in a script, and how often it may still jump back.
 class Places {
   public:
-    Places(std::size_t end, std::size_t count) : end_(static_cast<Word>(end)) {
-        next_.fill(end_);
-        std::fill_n(next_.begin(), count, 0);
-        passes_.fill(kMostPasses);
-    }
+    explicit Places(std::size_t end) : end_(static_cast<Word>(end)) { next_.fill(end_); }
 
-    /// Chooses the hits that are furthest behind; the others wait for them. False if all have ended.
-    bool choose(Machine& machine) {
+    void begin(std::size_t hit) {
+        next_[hit] = 0;
+        passes_[hit] = kMostPasses;
+    }
+    bool has_ended(std::size_t hit) const { return next_[hit] == end_; }
+    std::size_t ended() const { return static_cast<std::size_t>(std::count(next_.begin(), next_.end(), end_)); }
+
+    /// Chooses the hits that are furthest behind; the others wait for them.
+    void choose(Machine& machine) {
         first_ = *std::min_element(next_.begin(), next_.end());
-        Word active = kYes;
         wait_ = end_;
+        left_ = kMostPasses;
         for (std::size_t hit = 0; hit < kHits; ++hit) {
-            machine.active[hit] = next_[hit] == first_ ? kYes : 0;
-            active &= machine.active[hit];
-            wait_ = std::min(wait_, next_[hit] == first_ ? end_ : next_[hit]);
+            const bool chosen = next_[hit] == first_;
+            machine.active[hit] = chosen ? kYes : 0;
+            wait_ = std::min(wait_, chosen ? end_ : next_[hit]);
+            left_ = std::min(left_, chosen ? passes_[hit] : kMostPasses);
         }
-        machine.are_all_active = active == kYes;
-        return first_ < end_;
+        passed_ = 0;
     }
 
     /// The place of the chosen hits, and the one where the first of the others waits.
     Word first() const { return first_; }
     Word wait() const { return wait_; }
 
-    void go_on(const Machine& machine, Word to) {
-        for (std::size_t hit = 0; hit < kHits; ++hit) {
-            next_[hit] = machine.active[hit] != 0 ? to : next_[hit];
+    /// Sends the chosen hits on from a jump; where all go, or nothing if they part or have jumped back too often.
+    std::optional<Word> jump(const Machine& machine, const Instruction& at, Word from) {
+        const auto [some, every] = at.is_conditional ? shares(machine, at.a) : std::pair(true, true);
+        const bool is_back = at.to <= from;
+        if (!some || (every && !is_back)) {
+            return some ? at.to : from + 1;
         }
+        if (every && passed_ + 1 < left_) {
+            ++passed_;
+            return at.to;
+        }
+        for (std::size_t hit = 0; hit < kHits; ++hit) {
+            const bool jumps = every || machine.registers[at.a][hit] == 0;
+            go_on(machine, hit, jumps ? at.to : from + 1, passed_ + (jumps && is_back ? 1 : 0));
+        }
+        return std::nullopt;
     }
 
-    /// Sends the chosen hits on from a jump; where all go, or nothing if they part.
-    std::optional<Word> jump(const Machine& machine, const Instruction& at, Word from) {
-        // Copies of all, and masks in place of conditions, so that the loop vectorises.
-        const PerHit<Word> condition = machine.registers[at.a], active = machine.active;
-        PerHit<Word> next = next_, passes = passes_;
-        const Word always = at.is_conditional ? 0 : kYes, back = at.to <= from ? 1 : 0;
-        Word least = kYes, most = 0;
+    /// Keeps the place that the chosen hits have come to.
+    void stop(const Machine& machine, Word to) {
         for (std::size_t hit = 0; hit < kHits; ++hit) {
-            const Word jumps = always | (condition[hit] == 0 ? kYes : 0);
-            passes[hit] -= back & jumps & active[hit];
-            const Word ahead = (jumps & at.to) | (~jumps & (from + 1));
-            next[hit] = (active[hit] & (passes[hit] == 0 ? end_ : ahead)) | (~active[hit] & next[hit]);
-            least = std::min(least, next[hit] | ~active[hit]);
-            most = std::max(most, next[hit] & active[hit]);
+            go_on(machine, hit, to, passed_);
         }
-        next_ = next;
-        passes_ = passes;
-        return least == most ? std::optional(most) : std::nullopt;
     }
 
   private:
-    PerHit<Word> next_, passes_;
+    /// Whether a register is 0 for some of the chosen hits, and for all of them.
+    static std::pair<bool, bool> shares(const Machine& machine, Word condition) {
+        const hn::CappedTag<Word, kHits> d;
+        auto some = hn::Zero(d), other = some;
+        for (std::size_t hit = 0; hit < kHits; hit += hn::Lanes(d)) {
+            const auto active = hn::Load(d, &machine.active[hit]);
+            const auto is_zero = hn::VecFromMask(d, hn::Load(d, &machine.registers[condition][hit]) == hn::Zero(d));
+            some = some | (is_zero & active);
+            other = other | hn::AndNot(is_zero, active);
+        }
+        return {!hn::AllTrue(d, some == hn::Zero(d)), hn::AllTrue(d, other == hn::Zero(d))};
+    }
+
+    void go_on(const Machine& machine, std::size_t hit, Word to, Word passes) {
+        if (machine.active[hit] != 0) {
+            passes_[hit] -= std::min(passes, passes_[hit]);
+            next_[hit] = passes_[hit] == 0 ? end_ : to;
+        }
+    }
+
+    PerHit<Word> next_, passes_{};
     Word end_, first_ = 0, wait_ = 0;
+    Word left_ = 0, passed_ = 0;  // jumps back that one of the chosen hits has left, and those since they were chosen
 };
 
-/// Runs a script for the first `count` hits. Those that a branch parts go on together where both ways meet, which is
-/// further on in the script than the ways.
-void run(const std::vector<Instruction>& code, PerHit<Word>* registers, std::size_t count) {
-    Machine machine{registers, {}, false};
-    Places places(code.size(), count);
-    while (places.choose(machine)) {
-        std::optional<Word> at = places.first();
-        while (at && *at < places.wait()) {
-            const Instruction& instruction = code[*at];
-            if (instruction.act == nullptr) {
-                at = places.jump(machine, instruction, *at);
-                continue;
-            }
-            instruction.act(machine, instruction);
-            ++*at;
+/// Runs a script for the chosen hits until they part, end, or come to where others wait: those that a branch parts go
+/// on together where both ways meet, which is further on in the script than the ways.
+void run(const std::vector<Instruction>& code, Machine& machine, Places& places) {
+    places.choose(machine);
+    std::optional<Word> at = places.first();
+    while (at && *at < places.wait()) {
+        const Instruction& instruction = code[*at];
+        if (instruction.act == nullptr) {
+            at = places.jump(machine, instruction, *at);
+            continue;
         }
-        if (at) {
-            places.go_on(machine, *at);
-        }
+        instruction.act(machine, instruction);
+        ++*at;
+    }
+    if (at) {
+        places.stop(machine, *at);
     }
 }
 
@@ -426,25 +445,71 @@ void check_one(const ShaderScript& script) {
     }
 }
 
-void run_lanes(const OperationLanes& lanes) {
-    const ShaderScript& script = *lanes.script;
-    const std::vector<Instruction> code = instructions(script);
-    std::vector<PerHit<Word>> registers(script.registers.size());
-    for (std::size_t first = 0; first < lanes.count; first += kHits) {
-        const std::size_t count = std::min(kHits, lanes.count - first);
-        for (std::size_t i = 0; i < registers.size(); ++i) {
-            registers[i].fill(script.registers[i]);
-        }
-        for (std::size_t i = 0; i < script.argument_count; ++i) {
-            std::transform(lanes.arguments[i] + first, lanes.arguments[i] + first + count, registers[i].begin(),
-                           word<float>);
-        }
-        run(code, registers.data(), count);
-        for (std::size_t i = 0; i < script.results.size(); ++i) {
-            std::transform(registers[script.results[i]].begin(), registers[script.results[i]].begin() + count,
-                           lanes.results[i] + first, [](Word bits) { return std::bit_cast<float>(bits); });
+/// Runs a script for many hits, of which kHits are at work at a time: once half of these have ended, the next ones take
+/// their registers, so that few wait for the one that goes round a loop most often.
+class Crew {
+  public:
+    explicit Crew(const OperationLanes& lanes)
+        : lanes_(lanes),
+          script_(*lanes.script),
+          code_(instructions(script_)),
+          registers_(script_.registers.size()),
+          places_(code_.size()) {
+        hits_.fill(kNone);
+    }
+
+    void run_all() {
+        Machine machine{registers_.data(), {}};
+        while (relieve()) {
+            do {
+                run(code_, machine, places_);
+            } while (2 * places_.ended() < kHits);
         }
     }
+
+  private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    /// Takes the results of hits that have ended, and lets others begin; false if none is left.
+    bool relieve() {
+        for (std::size_t place = 0; place < kHits; ++place) {
+            if (!places_.has_ended(place)) {
+                continue;
+            }
+            if (hits_[place] != kNone) {
+                for (std::size_t i = 0; i < script_.results.size(); ++i) {
+                    lanes_.results[i][hits_[place]] = std::bit_cast<float>(registers_[script_.results[i]][place]);
+                }
+            }
+            hits_[place] = begun_ < lanes_.count ? begun_++ : kNone;
+            if (hits_[place] != kNone) {
+                begin(place);
+            }
+        }
+        return std::any_of(hits_.begin(), hits_.end(), [](std::size_t hit) { return hit != kNone; });
+    }
+
+    void begin(std::size_t place) {
+        for (std::size_t i = 0; i < registers_.size(); ++i) {
+            registers_[i][place] = script_.registers[i];
+        }
+        for (std::size_t i = 0; i < script_.argument_count; ++i) {
+            registers_[i][place] = word(lanes_.arguments[i][hits_[place]]);
+        }
+        places_.begin(place);
+    }
+
+    const OperationLanes& lanes_;
+    const ShaderScript& script_;
+    std::vector<Instruction> code_;
+    std::vector<PerHit<Word>> registers_;
+    Places places_;
+    std::array<std::size_t, kHits> hits_;
+    std::size_t begun_ = 0;
+};
+
+void run_lanes(const OperationLanes& lanes) {
+    Crew(lanes).run_all();
 }
 
 }  // namespace

@@ -122,7 +122,8 @@ class _Translation(Computation):
             results += [self.as_float(symbol, i) for i in range(symbol.width)]
         if self.argument_count > MOST_NUMBERS[0] or len(results) > MOST_NUMBERS[1]:
             raise ValueError("script has too many inputs or outputs")
-        core = self.core(self.argument_count, results)
+        named = [s.register for s in self.script.symbols.values() if s.kind in ("local", "param", "oparam")]
+        core = self.core(self.argument_count, results, named)
         return core, [s.name for s in self.globals], [(s.name, s.type) for s in outputs]
 
     def jump(self, list_of_jumps: list[int], unless: int | None = None) -> None:

@@ -28,7 +28,6 @@ COMPARISONS = {
     "neq": ("equal", False, True),
 }
 LUMINANCE = (0.2125072330236435, 0.7153501510620117, 0.0721426010131836)  # of Rec. 709, as Cycles has it
-LUMINANCE = (0.2125072330236435, 0.7153501510620117, 0.0721426010131836)  # of Rec. 709, as Cycles has it
 # Spaces of colours and places that are the scene's own.
 SAME_SPACE = ("common", "world", "rgb", "RGB")
 
@@ -241,6 +240,10 @@ class Computation(Registers):
 
     def element(self, op: Instruction) -> None:
         to, source, index = op.arguments
+        if source.length is None and index.known is not None:
+            part = source.register + min(max(int(index.known[0]), 0), 2)
+            self.assign(to, Symbol("temp", "float", "", register=part))
+            return
         for i, (first, place, length) in enumerate(self.places(source, index)):
             own = self.emit("load", self.temporary(), first, place, length)
             of_source = Symbol("temp", "int" if source.is_int else "float", "", register=own)

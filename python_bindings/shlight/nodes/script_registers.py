@@ -11,6 +11,7 @@ import numpy as np
 
 from shlight import _core
 from shlight.nodes.oso import Symbol
+from shlight.nodes.script_reuse import Reuse
 
 SPARE = 4  # registers after the last one, as instructions of several registers need them
 MOST_REGISTERS = 1 << 20
@@ -82,7 +83,7 @@ class Registers:
         register = self.own(symbol, i)
         if not symbol.is_int:
             return register
-        return register if symbol.known == (0.0,) else self.made("to_float", register)
+        return self.made("to_float", register) if symbol.known is None else self.constant(symbol.known[0])
 
     def as_int(self, symbol: Symbol, i: int = 0) -> int:
         register = self.own(symbol, i)
@@ -102,8 +103,10 @@ class Registers:
             self.emit("copy", first + i, register)
         return first
 
-    def core(self, arguments: int, results: list[int]) -> CoreScript:
-        """The script of the core."""
-        code = np.array(self.code, np.uint32).tobytes()
+    def core(self, arguments: int, results: list[int], variables: list[int]) -> CoreScript:
+        """The script of the core. variables: registers that the script has names for."""
+        words = [int(word) for word in self.registers]
+        needed = Reuse(self.code, words, arguments, results, variables).code_that_is_needed()
+        code = np.array(needed, np.uint32).tobytes()
         registers = np.array([*self.registers, *[0] * SPARE], np.uint32).tobytes()
         return CoreScript(code, registers, arguments, tuple(results))
