@@ -16,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -472,31 +473,36 @@ class Crew {
 
     /// Takes the results of hits that have ended, and lets others begin; false if none is left.
     bool relieve() {
+        std::array<std::size_t, kHits> free;
+        std::size_t count = 0;
         for (std::size_t place = 0; place < kHits; ++place) {
-            if (!places_.has_ended(place)) {
-                continue;
-            }
-            if (hits_[place] != kNone) {
-                for (std::size_t i = 0; i < script_.results.size(); ++i) {
-                    lanes_.results[i][hits_[place]] = std::bit_cast<float>(registers_[script_.results[i]][place]);
-                }
-            }
-            hits_[place] = begun_ < lanes_.count ? begun_++ : kNone;
-            if (hits_[place] != kNone) {
-                begin(place);
+            if (places_.has_ended(place)) {
+                take_results(place);
+                hits_[place] = begun_ < lanes_.count ? begun_++ : kNone;
+                free[count] = place;
+                count += hits_[place] != kNone ? 1 : 0;
             }
         }
+        begin(std::span(free).first(count));
         return std::any_of(hits_.begin(), hits_.end(), [](std::size_t hit) { return hit != kNone; });
     }
 
-    void begin(std::size_t place) {
+    void take_results(std::size_t place) {
+        for (std::size_t i = 0; hits_[place] != kNone && i < script_.results.size(); ++i) {
+            lanes_.results[i][hits_[place]] = std::bit_cast<float>(registers_[script_.results[i]][place]);
+        }
+    }
+
+    void begin(std::span<const std::size_t> places) {
         for (std::size_t i = 0; i < registers_.size(); ++i) {
-            registers_[i][place] = script_.registers[i];
+            for (const std::size_t place : places) {
+                registers_[i][place] =
+                    i < script_.argument_count ? word(lanes_.arguments[i][hits_[place]]) : script_.registers[i];
+            }
         }
-        for (std::size_t i = 0; i < script_.argument_count; ++i) {
-            registers_[i][place] = word(lanes_.arguments[i][hits_[place]]);
+        for (const std::size_t place : places) {
+            places_.begin(place);
         }
-        places_.begin(place);
     }
 
     const OperationLanes& lanes_;

@@ -39,6 +39,9 @@ constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
 /// The least share of light for which two paths share a broad lobe.
 constexpr double kShared = 0.04;
+/// Cosine between a bump's normal and the smooth one below which its light is no longer that of records: they know its
+/// share above the horizon in the mean over directions alone.
+constexpr float kLeastUpright = 0.5F;
 /// The density ÷ the filter of a direction in which Cycles would widen lobes to about half as much as by a filter of 0.
 constexpr double kFiltered = 0.75;
 /// Width of an interface whose rays differ by their side alone.
@@ -298,7 +301,8 @@ void CameraSurfaces::add_stored(const Segment& segment, std::uint32_t bounces, P
 }
 
 bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
-    if (settings_.stored == nullptr) {
+    const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
+    if (settings_.stored == nullptr || (lobe.is_bumped() && cosine < kLeastUpright)) {
         return false;
     }
     // Light that the camera sees is not told apart by bounces.
@@ -309,7 +313,6 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
     if (!settings_.stored->records.reflect(lobe.lit_side(surface.point), lobe.normal, first * parts, recorded_)) {
         return false;
     }
-    const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
     // Records have no light from below the horizon, and a bump's albedo leaves out what its lobe has there.
     const double above = lobe.is_bumped() ? (1 + double{cosine}) / 2 : 1.0;
     const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine) / above);
