@@ -170,7 +170,7 @@ def test_what_is_left_out_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> No
     lengths = []
     for _ in range(200):
         script = RandomScript(rng)
-        monkeypatch.setattr(script_reuse, "MOST_INSTRUCTIONS", 20_000)
+        monkeypatch.setattr(script_reuse, "MOST_INSTRUCTIONS", 2_000)
         found = script.found(places)
         lengths.append(len(script.core(2, script.results, script.variables).code) / (20 * len(script.code)))
         monkeypatch.setattr(script_reuse, "MOST_INSTRUCTIONS", 0)

@@ -16,7 +16,9 @@ from shlight import _core
 
 Code = list[list[int]]  # for each instruction its number, the register that it writes or where it jumps, and operands
 
-MOST_INSTRUCTIONS = 20_000  # of a script that is looked through, which takes longer than in proportion
+# Instructions, and elements of the arrays that these reach, of a script that is looked through: the time for it grows
+# with the square of the first.
+MOST_INSTRUCTIONS, MOST_ELEMENTS = 2_000, 100_000
 TWO = frozenset((
     "add", "sub", "mul", "div", "plain_div", "fmod", "plain_fmod", "min", "max", "step", "pow", "atan2", "less",
     "less_equal", "equal", "int_less", "int_less_equal", "int_equal", "int_add", "int_sub", "int_mul", "int_div",
@@ -43,7 +45,7 @@ def _kinds() -> list[tuple[str, tuple[int, ...]]]:
 
 
 class _Values:
-    """What registers hold along a stretch of instructions, as numbers of values."""
+    """Numbers the values that registers hold along a stretch of instructions."""
 
     def __init__(self, fixed: dict[int, Hashable], variables: frozenset[int]) -> None:
         self.variables = variables
@@ -83,7 +85,8 @@ class Reuse:
         self.variables = frozenset(variables)
         self.code = [list(op) for op in code]
         self.copy = _core.script_instructions().index("copy")
-        self.arrays = {r for op in code for r in self.array(op)}
+        self.is_long = len(code) > MOST_INSTRUCTIONS or sum(len(self.array(op)) for op in code) > MOST_ELEMENTS
+        self.arrays: set[int] = set() if self.is_long else {r for op in code for r in self.array(op)}
         self.results = frozenset(results)
         self.targets = {op[1] for op in code if self.is_jump(op)}
         written = self.arrays.union(*(self.written(op) for op in code))
@@ -117,7 +120,7 @@ class Reuse:
         return [r + i for r, width in zip(op[2:], _kinds()[op[0]][1], strict=False) for i in range(width)]
 
     def code_that_is_needed(self) -> Code:
-        if len(self.code) <= MOST_INSTRUCTIONS:
+        if not self.is_long:
             values = _Values(self.fixed, self.variables)
             for place, op in enumerate(self.code):
                 if place in self.targets:
@@ -164,7 +167,7 @@ class Reuse:
         return register
 
     def backwards(self, live_at: dict[int, frozenset[int]]) -> Iterator[tuple[int, list[int], set[int]]]:
-        """From the last instruction on: its place, and the registers that are read after it.
+        """Yields each instruction, from the last one on, with its place and the registers that are read after it.
 
         live_at: the registers that are read from the target of a jump on; it is brought up to date.
         """
