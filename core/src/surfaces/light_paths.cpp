@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "lights/shadow_ray_spawner.h"
 #include "lobes/refraction.h"
 #include "shlight/sampling.h"
+#include "surfaces/bump_basis.h"
 #include "surfaces/camera_surfaces.h"
 
 namespace shlight {
@@ -39,9 +41,6 @@ constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
 /// The least share of light for which two paths share a broad lobe.
 constexpr double kShared = 0.04;
-/// Cosine between a bump's normal and the smooth one below which its light is no longer that of records: they know its
-/// share above the horizon in the mean over directions alone.
-constexpr float kLeastUpright = 0.5F;
 /// The density ÷ the filter of a direction in which Cycles would widen lobes to about half as much as by a filter of 0.
 constexpr double kFiltered = 0.75;
 /// Width of an interface whose rays differ by their side alone.
@@ -301,8 +300,7 @@ void CameraSurfaces::add_stored(const Segment& segment, std::uint32_t bounces, P
 }
 
 bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
-    const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
-    if (settings_.stored == nullptr || (lobe.is_bumped() && cosine < kLeastUpright)) {
+    if (settings_.stored == nullptr) {
         return false;
     }
     // Light that the camera sees is not told apart by bounces.
@@ -310,12 +308,17 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
     const std::uint32_t first = sink.first_bounces > 0 ? 0 : most - 1;
     const std::size_t parts = settings_.stored->parts;
     recorded_.assign((most - first) * parts, Rgb(0));
-    if (!settings_.stored->records.reflect(lobe.lit_side(surface.point), lobe.normal, first * parts, recorded_)) {
+    const std::optional<RecordBasis> bump = bumped_basis(lobe.shape, lobe.normal, lobe.leans_from);
+    if (!settings_.stored->records.reflect(lobe.lit_side(surface.point), lobe.normal, bump, first * parts, recorded_)) {
         return false;
     }
-    // Records have no light from below the horizon, and a bump's albedo leaves out what its lobe has there.
-    const double above = lobe.is_bumped() ? (1 + double{cosine}) / 2 : 1.0;
-    const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine) / above);
+    Rgb weight = surface.throughput * lobe.weight;
+    if (!bump) {
+        const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
+        // Records have no light from below the horizon, and a bump's albedo leaves out what its lobe has there.
+        const double above = lobe.is_bumped() ? (1 + double{cosine}) / 2 : 1.0;
+        weight *= static_cast<float>(lobe_albedo(lobe.shape, cosine) / above);
+    }
     // Light of a record is nowhere negative, which may leave too much of some parts.
     for (std::size_t i = 0; parts > 1 && i < recorded_.size(); i += parts) {
         complete(std::span(recorded_).subspan(i + 1, parts - 1), recorded_[i], parts - 2);

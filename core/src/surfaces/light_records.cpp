@@ -65,29 +65,29 @@ float density(const LightRecord& record) {
     return static_cast<float>(1 / (record.radius * record.radius));
 }
 
-/// A white diffuse surface: what it reflects of a record's light.
+/// A white diffuse surface, or a lobe: what it reflects of a record's light.
 class LightRecords::Diffuse {
   public:
-    Diffuse(const Vec3d& position, const Vec3d& normal) : position_(position), normal_(normal) {}
+    Diffuse(const Vec3d& position, const Vec3d& normal, const std::optional<RecordBasis>& lobe = std::nullopt)
+        : position_(position), normal_(normal), is_lobe_(lobe.has_value()), basis_(lobe) {}
 
     Rgb reflected(const LightRecord& record, std::size_t number) {
         const Vec3f way(position_ - record.position);
         const auto& [x, y, z] = record.gradient[number];
         const Rgb change = way.x * x + way.y * y + way.z * z;
-        if (glm::dot(record.normal, normal_) > kEqualNormals) {
+        if (!is_lobe_ && glm::dot(record.normal, normal_) > kEqualNormals) {
             return glm::max(record.reflected[number] + change, Rgb(0));
         }
-        if (!has_basis_) {
+        if (!basis_) {
             basis_ = reflected_basis(normal_);
-            has_basis_ = true;
         }
-        return glm::max(sum_of(record.light[number], basis_) + change, Rgb(0));
+        return glm::max(sum_of(record.light[number], *basis_) + change, Rgb(0));
     }
 
   private:
     Vec3d position_, normal_;
-    bool has_basis_ = false;
-    RecordBasis basis_;
+    bool is_lobe_;
+    std::optional<RecordBasis> basis_;
 };
 
 void LightRecord::limit_radius(double wanted, double least, double most) {
@@ -227,9 +227,9 @@ float LightRecords::Sphere::weight(const Vec3f& position, const Vec3f& normal_th
     return near * near * (turn - kLeastCosine) / (1 - kLeastCosine);
 }
 
-bool LightRecords::reflect(const SurfacePoint& point, const Vec3d& normal, std::size_t first,
-                           std::span<Rgb> reflected_light) const {
-    Diffuse surface(point.position, normal);
+bool LightRecords::reflect(const SurfacePoint& point, const Vec3d& normal, const std::optional<RecordBasis>& lobe,
+                           std::size_t first, std::span<Rgb> reflected_light) const {
+    Diffuse surface(point.position, normal, lobe);
     float weights = 0;
     for_each_near(point, [&](std::size_t, const LightRecord& record, float nearness) {
         const float weight = nearness * density(record);

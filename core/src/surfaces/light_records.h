@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
@@ -102,8 +103,9 @@ class LightRecords {
     void index() { index(picture_); }
 
     /// reflected[i]: what a white diffuse surface with this normal reflects of the records' light number first + i.
-    /// Returns false if no record is near.
-    bool reflect(const SurfacePoint& point, const Vec3d& normal, std::size_t first, std::span<Rgb> reflected) const;
+    /// lobe: f·cos of the lobe that the surface has instead. Returns false if no record is near.
+    bool reflect(const SurfacePoint& point, const Vec3d& normal, const std::optional<RecordBasis>& lobe,
+                 std::size_t first, std::span<Rgb> reflected) const;
     /// The same for one, with its errors.
     RecordedLight look_up(const SurfacePoint& point, std::size_t number) const;
     /// Calls f(number, record, weight) for each record near a point.
