@@ -19,7 +19,7 @@ namespace {
 
 /// Angles between the normals that the table has, from 0 to a right angle.
 constexpr std::size_t kLeans = 33;
-/// Steps of the integrals over the hemisphere, and half as many of those around it.
+/// Steps of the integrals from the pole to the horizon, half as many as around it.
 constexpr int kSteps = 48;
 constexpr double kLeastSine = 1e-6;
 
@@ -27,7 +27,7 @@ constexpr std::size_t kAxes = kRecordOrder;
 /// For each band l the weights of l + 1 axes.
 using AxisWeights = std::array<std::array<double, kAxes>, kRecordOrder>;
 
-/// An axis in the plane of the normals: at as many steps from the bump's normal z towards x.
+/// An axis in the plane of the normals: so many fifths of a half turn from the bump's normal z towards x.
 const Vec3d& axis(std::size_t number) {
     static const auto kDirections = [] {
         std::array<Vec3d, kAxes> list;
@@ -109,8 +109,12 @@ std::array<AxisWeights, kLeans> weights_of(const DiffuseShape& shape) {
 }
 
 const std::array<AxisWeights, kLeans>& table_of(const DiffuseShape& shape) {
-    static const auto kCubic = weights_of({Diffuse::bumped_cubic}), kGgx = weights_of({Diffuse::bumped_ggx});
-    return shape.kind == Diffuse::bumped_cubic ? kCubic : kGgx;
+    if (shape.kind == Diffuse::bumped_cubic) {
+        static const auto kCubic = weights_of({Diffuse::bumped_cubic});
+        return kCubic;
+    }
+    static const auto kGgx = weights_of({Diffuse::bumped_ggx});
+    return kGgx;
 }
 
 }  // namespace

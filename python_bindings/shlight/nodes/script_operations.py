@@ -241,7 +241,7 @@ class Computation(Registers):
     def element(self, op: Instruction) -> None:
         to, source, index = op.arguments
         if source.length is None and index.known is not None:
-            part = source.register + min(max(int(index.known[0]), 0), 2)
+            part = self.own(source) + min(max(int(index.known[0]), 0), 2)
             self.assign(to, Symbol("temp", "float", "", register=part))
             return
         for i, (first, place, length) in enumerate(self.places(source, index)):
