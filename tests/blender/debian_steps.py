@@ -33,7 +33,10 @@ def start(plan: Generator[None, None, None], found: dict[str, Any], seconds: flo
         except Exception:
             traceback.print_exc()
             os._exit(1)
-        bpy.ops.wm.quit_blender()
+        try:
+            bpy.ops.wm.quit_blender()
+        except RuntimeError:  # the preview of a material is being rendered
+            return seconds
         return None
 
     bpy.context.preferences.view.show_splash = False
