@@ -40,26 +40,27 @@ const Vec3d& axis(std::size_t number) {
     return kDirections[number];
 }
 
-RecordBasis harmonics(const Vec3d& direction) {
-    RecordBasis basis;
-    const Vec3f one(direction);
-    sh_basis(std::span<const Vec3f>(&one, 1), kRecordOrder, std::span<float>(basis));
+using Terms = std::array<double, kRecordTerms>;
+
+Terms harmonics(const Vec3d& direction) {
+    Terms basis;
+    sh_basis(direction, kRecordOrder, basis.data());
     return basis;
 }
 
 /// The cosine terms of a lobe whose smooth normal leans from its own by an angle.
-std::array<double, kRecordTerms> projected(const DiffuseShape& shape, double lean) {
+Terms projected(const DiffuseShape& shape, double lean) {
     const Vec3d smooth(std::sin(lean), 0, std::cos(lean));
-    std::array<double, kRecordTerms> sums{};
+    Terms sums{};
     for (int i = 0; i < kSteps; ++i) {
         const double z = (i + 0.5) / kSteps, radius = std::sqrt(1 - z * z);
         for (int j = 0; j < 2 * kSteps; ++j) {
             const double angle = (j + 0.5) * std::numbers::pi / kSteps;
             const Vec3d direction(radius * std::cos(angle), radius * std::sin(angle), z);
-            const RecordBasis basis = harmonics(direction);
+            const Terms basis = harmonics(direction);
             const double value = shape.value(direction, smooth) * std::numbers::pi / (kSteps * kSteps);
             for (std::size_t k = 0; k < kRecordTerms; ++k) {
-                sums[k] += value * double{basis[k]};
+                sums[k] += value * basis[k];
             }
         }
     }
@@ -67,13 +68,13 @@ std::array<double, kRecordTerms> projected(const DiffuseShape& shape, double lea
 }
 
 /// Solves for the axes' weights in a band by elimination.
-std::array<double, kAxes> solved(std::size_t l, std::span<const double> terms) {
+std::array<double, kAxes> solved(std::size_t l, const Terms& terms) {
     std::array<std::array<double, kAxes + 1>, kAxes> rows{};
     const std::size_t count = l + 1, first = l * l + l;
     for (std::size_t k = 0; k < count; ++k) {
-        const RecordBasis basis = harmonics(axis(k));
+        const Terms basis = harmonics(axis(k));
         for (std::size_t m = 0; m < count; ++m) {
-            rows[m][k] = double{basis[first + m]};
+            rows[m][k] = basis[first + m];
             rows[m][kAxes] = terms[first + m];
         }
     }
@@ -100,7 +101,7 @@ std::array<AxisWeights, kLeans> weights_of(const DiffuseShape& shape) {
     std::array<AxisWeights, kLeans> table;
     for (std::size_t i = 0; i < kLeans; ++i) {
         const double lean = std::min(static_cast<double>(i) / (kLeans - 1), 0.999) * std::numbers::pi / 2;
-        const std::array<double, kRecordTerms> terms = projected(shape, lean);
+        const Terms terms = projected(shape, lean);
         for (std::size_t l = 0; l < kRecordOrder; ++l) {
             table[i][l] = solved(l, terms);
         }

@@ -88,6 +88,7 @@ class Reuse:
         self.is_long = len(code) > MOST_INSTRUCTIONS or sum(len(self.array(op)) for op in code) > MOST_ELEMENTS
         self.arrays: set[int] = set() if self.is_long else {r for op in code for r in self.array(op)}
         self.results = frozenset(results)
+        self.kept = self.results | self.arrays  # what the end of the script reads, or may
         self.targets = {op[1] for op in code if self.is_jump(op)}
         written = self.arrays.union(*(self.written(op) for op in code))
         self.fixed: dict[int, Hashable] = {
@@ -197,7 +198,7 @@ class Reuse:
     def is_idle(self, op: list[int], live: set[int]) -> bool:
         """Whether an instruction only writes what is not in `live`. What arrays hold and results are always read."""
         written = self.written(op)
-        return bool(written) and all(set.isdisjoint(set(written), kept) for kept in (live, self.results, self.arrays))
+        return bool(written) and live.isdisjoint(written) and self.kept.isdisjoint(written)
 
     def unread(self) -> set[int]:
         """The places of instructions whose result nothing reads, and of copies to the same register."""
@@ -215,7 +216,8 @@ class Reuse:
                 self.name(op) == "copy"
                 and list(self.written(before)) == [op[2]]
                 and place not in self.targets
-                and op[2] not in live | self.results | self.arrays
+                and op[2] not in live
+                and op[2] not in self.kept
             ):
                 before[1] = op[1]
                 found.add(place)
