@@ -102,13 +102,27 @@ def cap(studio: Any, material: Any) -> None:
     mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", (places[:, :2] * (-1, 0.5)).ravel())
 
 
+def floor_of_quads(studio: Any, material: Any) -> None:
+    """Four flat quads, each of whose halves has other tangents than the quad as a whole."""
+    places = np.array([(x, y) for y in (-1.5, 0.0, 1.5) for x in (-1.5, 0.0, 1.5)])
+    faces = [(i, i + 1, i + 4, i + 3) for i in (0, 1, 3, 4)]
+    mesh = studio.mesh("Floor", np.pad(places, ((0, 0), (0, 1))).tolist(), faces, material).data
+    x, y = places[[loop.vertex_index for loop in mesh.loops]].T
+    uvs = np.stack([x + 0.4 * x * y, y - 0.3 * x * x * y], axis=1)
+    mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", uvs.ravel())
+
+
 SINCE_51 = pytest.mark.skipif(bpy.app.version < (5, 1, 0), reason="normal maps have one convention")
 
 
-@pytest.mark.parametrize("form", ["cap", pytest.param("cap with green down", marks=SINCE_51), "ball"])
-def test_normal_maps_of_faces_of_many_corners_and_without_a_uv_map(studio: Any, form: str) -> None:
-    """Blender gives no tangents of them, and Cycles has its own. The normals between corners differ much in length."""
-    if form != "ball":
+@pytest.mark.parametrize("form", ["cap", pytest.param("cap with green down", marks=SINCE_51), "ball", "quads"])
+def test_normal_maps_of_other_faces_than_triangles_and_without_a_uv_map(studio: Any, form: str) -> None:
+    """Blender gives no tangents of them, or of faces as a whole, and Cycles has its own. The normals between the cap's
+    corners differ much in length.
+    """
+    if form == "quads":
+        floor_of_quads(studio, normal_mapped(studio))
+    elif form != "ball":
         material = normal_mapped(studio)
         if form == "cap with green down":
             material.node_tree.nodes["Normal Map"].convention = "DIRECTX"

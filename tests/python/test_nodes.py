@@ -12,7 +12,7 @@ import pytest
 import shlight
 from shlight import nodes
 from shlight.nodes import energy
-from shlight.nodes.values import number
+from shlight.nodes.values import in_order, number
 from shlight_tools.energy import TABLES
 
 STRIPS = np.linspace(0.05, 1.0, 6)
@@ -85,6 +85,17 @@ def test_a_program_is_as_long_as_what_varies() -> None:
     for _ in range(5000):
         deep = deep + 1.0
     assert nodes.lambert(deep).operation_count == 5000
+
+
+@pytest.mark.parametrize("picture", [False, True])
+def test_values_that_are_bent_again_and_again_share_what_is_below_them(picture: bool) -> None:
+    """Each asks for what it bends without footprints, of which there is one copy, however many ask."""
+    value = nodes.image(np.eye(4, dtype=np.float32)[..., None].repeat(3, axis=2)).x if picture else nodes.noise().x
+    lengths = []
+    for _ in range(12):
+        value = value + nodes.map_range(value, 0.2, 0.9)
+        lengths.append(len(list(in_order([value.step]))))
+    assert np.ptp(np.diff(lengths)[1:]) == 0
 
 
 def test_another_normal_counts_in_lobes_and_expressions() -> None:

@@ -157,13 +157,14 @@ def _color_layer(layers: Any, name: str) -> Any:
 def _tangents(mesh: Any, triangles: Triangles, normals: FloatArray | None, name: str) -> FloatArray | None:
     """The tangents of a UV map. A mesh without maps has that of directions from its origin.
 
-    Blender computes them faster, where no face has more than four corners and Python can say the map's name.
+    Blender computes them faster, and the same where all faces are triangles: else it takes theirs, and Cycles those of
+    the triangles that they are cut into. Python has to be able to say the map's name.
     """
     layer = _uv_layer(mesh, name)
     if layer is None and name != UV:
         return None
-    has_many_corners = np.bincount(triangles.polygons).max() > 2
-    if layer is None or has_many_corners or not is_utf8(layer):
+    is_cut = np.bincount(triangles.polygons).max() > 1
+    if layer is None or is_cut or not is_utf8(layer):
         uvs = _on_sphere(triangles.vertices) if layer is None else _uvs(layer)
         corners = triangles.corner_vertices if layer is None else triangles.corners
         turns = layer is None and ANGLES_TURN

@@ -39,9 +39,8 @@ def triangle_tangents(
 
     normals: of corners (k, 3, 3) or vertices (n, 3); None if the triangles are flat. uvs: (k, 3, 2). Corners that agree
     in place, normal, UV and sign share the mean of what their triangles say, weighed by the angle at the corner, in the
-    plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). Blender computes the same, of no
-    mesh that has a face of more than four corners. u_turns: u counts turns, and a triangle's edges take the shorter way
-    round from its first corner.
+    plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). u_turns: u counts turns, and a
+    triangle's edges take the shorter way round from its first corner.
     """
     if normals is None:
         normals = np.repeat(face_normals(vertices, triangles)[:, None], 3, axis=1)
@@ -62,9 +61,15 @@ def triangle_tangents(
     weighed = np.arccos(np.clip((to_next * to_previous).sum(axis=-1), -1.0, 1.0))[..., None] * own
     signs = np.repeat(sign, 3)
     told_by = np.concatenate([np.concatenate([p, n, uv], axis=-1).reshape(-1, 8), signs[:, None]], axis=1)
-    groups, group = np.unique(told_by, axis=0, return_inverse=True)
-    group = group.reshape(-1)
-    mean = np.zeros((len(groups), 3))
-    np.add.at(mean, group, weighed.reshape(-1, 3))
+    group = _equal_rows(told_by)
+    mean = np.stack([np.bincount(group, each) for each in weighed.reshape(-1, 3).T], axis=1)
     found = np.concatenate([unit(mean, 0.0)[group], signs[:, None]], axis=1)
     return found.reshape(-1, 3, 4).astype(np.float32)
+
+
+def _equal_rows(rows: NDArray[np.float64]) -> NDArray[np.intp]:
+    """A number for each row, which equal ones have in common. Their bytes are sorted, three times as fast as numbers."""
+    single = rows.astype(np.float32) + np.float32(0.0)  # of -0 and 0 the same bytes
+    whole = single.view(np.dtype((np.void, single.itemsize * single.shape[1])))
+    group: NDArray[np.intp] = np.unique(whole, return_inverse=True)[1].reshape(-1)
+    return group

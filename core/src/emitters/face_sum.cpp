@@ -69,8 +69,10 @@ void FaceSum::look() {
         const std::uint32_t node = opened_.back();
         opened_.pop_back();
         const bool is_leaf = faces_->nodes_[node].first_child == FaceTree::kLeaf;
-        const PartView seen(faces_->nodes_[node].part, *frame_, front_only_, is_leaf);
-        if (seen.hidden) {
+        const FacePart& part = faces_->nodes_[node].part;
+        const PartView seen(part, *frame_, front_only_, is_leaf);
+        // The light of a level part is that of rounding, and would be asked for face by face.
+        if (seen.hidden || seen.is_level(part, clearance_)) {
             continue;
         }
         if (seen.width > kWide && !is_leaf) {

@@ -112,6 +112,9 @@ void FaceTree::find_variation(std::uint32_t first, std::uint32_t last, FacePart&
         squares += area * largest_channel(difference) * largest_channel(difference);
         slopes += glm::outerProduct(area * ((f.a + f.b + f.c) / 3.0 - part.center), difference);
         part.bend = area > 0 ? std::max(part.bend, glm::length(normal / area - common)) : part.bend;
+        for (const Vec3d& corner : {f.a, f.b, f.c}) {
+            part.thickness = std::max(part.thickness, std::abs(glm::dot(common, corner - part.center)));
+        }
     }
     part.deviation = std::sqrt(squares / part.area);
     part.slope = std::max({glm::length(slopes[0]), glm::length(slopes[1]), glm::length(slopes[2])}) /

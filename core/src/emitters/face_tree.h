@@ -39,6 +39,7 @@ struct FacePart {
     double slope;       ///< the mean of (radiance - mean) · (place - center) ÷ radius, 0 … deviation
     double shown;       ///< |area_vector|, the area as seen from afar, 0 … area
     double bend;        ///< no normal is farther, as a vector of length 1, from that of area_vector
+    double thickness;   ///< no corner is farther from the plane through center across area_vector
     double brightness;  ///< root mean square of the faces' radiance
 };
 
@@ -64,6 +65,12 @@ struct PartView {
     double unclear;   ///< and may show, if its faces do not all turn the same side to the hit
     bool one_side;    ///< they do
     bool hidden;      ///< nothing of it shines on the hit
+
+    /// Whether the hit is level with the part's every face (FaceViewpoint::clearance): they lie in one plane with it.
+    bool is_level(const FacePart& part, double clearance) const {
+        const double height = std::abs(facing) * distance / part.shown;
+        return height + part.thickness + part.bend * (distance + part.radius) <= clearance;
+    }
 };
 
 /// Immutable; any number of threads may read it.

@@ -65,11 +65,11 @@ class _Varying(NamedTuple):
 
 def unresolved_variance(value: Value) -> Value | None:
     """The variance; None where no noise is known to make it other than 0."""
-    known: dict[int, _Varying | None] = {}
+    known: dict[Step, _Varying | None] = {}
     for step in in_order([value.step]):
-        given = [known[id(argument.step)] for argument in step.arguments]
-        known[id(step)] = _of_noise(step) if step.name.startswith("noise") else _propagated(step, given)
-    found = known[id(value.step)]
+        given = [known[argument.step] for argument in step.arguments]
+        known[step] = _of_noise(step) if step.name.startswith("noise") else _propagated(step, given)
+    found = known[value.step]
     return None if found is None else found.variance
 
 

@@ -36,9 +36,8 @@ class ProgramBuilder:
         self._tables: list[tuple[Any, list[int]]] = []
         self._images: list[ImageLookup] = []
         self._scripts: list[CoreScript] = []
-        self._numbers: dict[int, int] = {}  # first value of a step, by id
+        self._numbers: dict[Step, int] = {}  # first value of a step
         self._known: dict[Any, int] = {}  # the same by what the step computes
-        self._kept: list[Step] = []  # whose id must not be given to another
         self._resources: dict[int, int] = {}
         self._values = 0
         self._results: list[int] = []
@@ -48,9 +47,8 @@ class ProgramBuilder:
         first = len(self._results)
         for value in values:
             for step in in_order([value.step], self._numbers):
-                self._kept.append(step)
-                self._numbers[id(step)] = self._add(step)
-            self._results.append(self._numbers[id(value.step)] + value.output)
+                self._numbers[step] = self._add(step)
+            self._results.append(self._numbers[value.step] + value.output)
         return first
 
     def program(self) -> _core.ShaderProgram:
@@ -67,7 +65,7 @@ class ProgramBuilder:
         return SOURCES[source], index
 
     def _add(self, step: Step) -> int:
-        arguments = [self._numbers[id(a.step)] + a.output for a in step.arguments]
+        arguments = [self._numbers[a.step] + a.output for a in step.arguments]
         entry, count = self._entry(step, arguments)
         key = (*entry[:4], tuple(entry[4]), str(entry[1]))
         if key not in self._known:

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, MutableMapping
 from enum import IntEnum
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from shlight.nodes.values import (
     Color,
@@ -25,6 +26,13 @@ FOOTPRINTS = frozenset(f"footprint{count}" for count in range(1, 5))  # operatio
 
 # A function that gives what takes the place of a step, and None where the step stays.
 Replace = Callable[[Step], Value | None]
+# The results that take the place of a step's, None where nothing changes.
+Replaced = MutableMapping[Step, tuple[Value, ...] | None]
+
+
+# What `unfiltered` has found. Expressions that bend bent ones share it: each would copy all that is below it anew, and
+# nodes in a row would double what there is, each of them.
+_UNFILTERED: Replaced = WeakKeyDictionary()
 
 
 class Ray(IntEnum):
@@ -53,7 +61,7 @@ def on_ray(values: Iterable[Value], kind: Ray | None, *, filtered: bool = True) 
     def known(step: Step) -> Value | None:
         return number(float(step.data == kind)) if step.name == "ray" and kind is not None else None
 
-    return _replaced(values, known, filtered=filtered)
+    return _replaced(values, known, _UNFILTERED if kind is None and not filtered else {}, filtered=filtered)
 
 
 def unfiltered(value: Value) -> Value:
@@ -64,7 +72,7 @@ def unfiltered(value: Value) -> Value:
 def with_vectors(values: Iterable[Value], vectors: Mapping[str, Vector]) -> list[Value]:
     """Expressions that read other vectors in the place of some sources, "position" for instance."""
     known = _by_source(vectors)
-    return _replaced(values, lambda step: known.get(step.data) if step.name == "input" else None)
+    return _replaced(values, lambda step: known.get(step.data) if step.name == "input" else None, {})
 
 
 def beside(value: Value, side: str, width: float, vectors: Mapping[str, Vector]) -> Value:
@@ -77,19 +85,18 @@ def beside(value: Value, side: str, width: float, vectors: Mapping[str, Vector])
         here = Value(step)
         return known[step.data] if step.data in known else here + operation(side, here, data=width)
 
-    return _replaced([value], moved)[0]
+    return _replaced([value], moved, {})[0]
 
 
 def _by_source(vectors: Mapping[str, Vector]) -> dict[Any, Value]:
     return {(source, 0, i): c for source, own in vectors.items() for i, c in enumerate(own)}
 
 
-def _replaced(values: Iterable[Value], replace: Replace, *, filtered: bool = True) -> list[Value]:
+def _replaced(values: Iterable[Value], replace: Replace, found: Replaced, *, filtered: bool = True) -> list[Value]:
     wanted = list(values)
-    found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
-    for step in in_order(value.step for value in wanted):
+    for step in in_order((value.step for value in wanted), found):
         own = _rebuilt(step, found, replace)
-        found[id(step)] = own if filtered or not _is_filter(step) else _at_the_place(step, own)
+        found[step] = own if filtered or not _is_filter(step) else _at_the_place(step, own)
     return [_result(value, found) for value in wanted]
 
 
@@ -104,18 +111,20 @@ def has_filters(values: Iterable[Value]) -> bool:
 
 
 def _is_filter(step: Step) -> bool:
-    return step.name == "image" or step.name in FOOTPRINTS
+    if step.name == "image":
+        return any(share.constant != 0.0 for share in step.arguments[2:])
+    return step.name in FOOTPRINTS
 
 
-def _result(value: Value, found: dict[int, tuple[Value, ...] | None]) -> Value:
-    results = found[id(value.step)]
+def _result(value: Value, found: Replaced) -> Value:
+    results = found[value.step]
     return value if results is None else results[value.output]
 
 
-def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], replace: Replace) -> tuple[Value, ...] | None:
+def _rebuilt(step: Step, found: Replaced, replace: Replace) -> tuple[Value, ...] | None:
     if (new := replace(step)) is not None:
         return (new,)
-    if all(found[id(a.step)] is None for a in step.arguments):
+    if all(found[a.step] is None for a in step.arguments):
         return None
     arguments = [_result(a, found) for a in step.arguments]
     if step.name == "select":

@@ -21,7 +21,7 @@ from shlight import _core
 LARGEST_COLOR, LARGEST_RADIANCE = 1e10, 1e15  # docs/conventions.md
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
 class Step:
     """A constant, an input or an operation; `data` is the constant, or (source, index or name, component), or a table,
     image, script or mode."""
@@ -361,19 +361,19 @@ def normalize(a: Vector) -> Vector:
     return a / length(a)
 
 
-def in_order(wanted: Iterable[Step], known: Container[int] = ()) -> Iterator[Step]:
-    """All steps of expressions, each once and after its arguments; `known`: ids of steps that are left out."""
-    seen: set[int] = set()
+def in_order(wanted: Iterable[Step], known: Container[Step] = ()) -> Iterator[Step]:
+    """All steps of expressions, each once and after its arguments; `known`: steps that are left out."""
+    seen: set[Step] = set()
     waiting = list(wanted)
     while waiting:
         step = waiting[-1]
-        missing = [a.step for a in step.arguments if id(a.step) not in seen and id(a.step) not in known]
+        missing = [a.step for a in step.arguments if a.step not in seen and a.step not in known]
         if missing:
             waiting += missing
             continue
         waiting.pop()
-        if id(step) not in seen and id(step) not in known:
-            seen.add(id(step))
+        if step not in seen and step not in known:
+            seen.add(step)
             yield step
 
 
