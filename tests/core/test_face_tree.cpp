@@ -148,6 +148,36 @@ TEST(FaceSum, IsTheSumOverAllFacesWithinItsTolerance) {
     }
 }
 
+/// A strip along x that lies in the plane z = 0 but for its folds.
+Emitter folded_strip(double height) {
+    Emitter strip = {{}, {}, false};
+    for (std::uint32_t i = 0; i < 9; ++i) {
+        const double z = i % 2 == 0 ? height : -height;
+        strip.solid.vertices.insert(strip.solid.vertices.end(), {Vec3d(i, -1, z), Vec3d(i, 1, z)});
+        if (i > 0) {
+            const std::uint32_t k = 2 * i;
+            strip.solid.triangles.insert(strip.solid.triangles.end(), {{k - 2, k, k - 1}, {k, k + 1, k - 1}});
+        }
+    }
+    strip.radiance.assign(strip.solid.triangles.size(), Rgb(1));
+    return strip;
+}
+
+TEST(FaceSum, HasTheLightOfFoldsInWhosePlaneAHitLies) {
+    const View view = {{{-3, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, {0, 0.6, 0.8}};
+    FaceSum sum;
+    for (const double height : {0.0, 0.01, 0.3}) {
+        const Emitter strip = folded_strip(height);
+        const FaceTree faces = strip.faces();
+        std::vector<NearFace> near;
+        std::array<SummedLobe, 1> summed = {{{LambertShape{}, 1}}};
+        sum.add_up(faces, view.to_viewer, view.frame, faces.viewpoint(view.frame, 0), 1e-3, 0, summed, near);
+        const Vec3d found = summed[0].light + near_light(near, LambertShape{}, view);
+        const Vec3d truth = brute_force(strip, LambertShape{}, view);
+        EXPECT_LE(glm::length(found - truth), 3e-3 * truth.y) << height;
+    }
+}
+
 /// Directions that are drawn or met bring the same light, and agree about the density of what both find.
 TEST(FaceSampler, BringsTheSumOverAllFaces) {
     RandomInput random(6);
