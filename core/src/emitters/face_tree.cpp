@@ -131,15 +131,19 @@ double FaceTree::height_over(const Face& face, const Vec3d& point) {
     return glm::dot(glm::normalize(glm::cross(face.b - face.a, face.c - face.a)), point - face.a);
 }
 
-const FaceTree::Face* FaceTree::face_at(const Vec3d& point, const Vec3d& direction) const {
-    const Ray ray = {Vec3f(point), 0, Vec3f(direction)};
+const FaceTree::Face* FaceTree::next_face(Ray& ray) const {
     RayHit met;
     rays_->intersect({&ray, 1}, {&met, 1});
-    return met.missed() ? nullptr : &faces_[leaf_of_[met.triangle]];
+    if (met.missed()) {
+        return nullptr;
+    }
+    ray.t_min = std::nextafter(met.distance, std::numeric_limits<float>::infinity());
+    return &faces_[leaf_of_[met.triangle]];
 }
 
 Rgb FaceTree::from(const FaceViewpoint& viewpoint, const Vec3d& direction) const {
-    const Face* face = face_at(viewpoint.start, direction);
+    Ray ray = {Vec3f(viewpoint.start), 0, Vec3f(direction)};
+    const Face* face = next_face(ray);
     const bool shines = face != nullptr && (is_front(*face, direction) || !viewpoint.front_only);
     return shines ? face->radiance : Rgb(0);
 }
@@ -157,14 +161,10 @@ bool FaceTree::shows_front_only(const Vec3d& point) const {
     // A ray leaves each closed surface around the point once more than it enters it.
     int around = 0;
     Ray up = {Vec3f(point), 0, Vec3f(0, 0, 1)};
-    for (RayHit met;;) {
-        rays_->intersect({&up, 1}, {&met, 1});
-        if (met.missed()) {
-            return around <= 0;
-        }
-        around += is_front(faces_[leaf_of_[met.triangle]], Vec3d(up.direction)) ? -1 : 1;
-        up.t_min = std::nextafter(met.distance, std::numeric_limits<float>::infinity());
+    while (const Face* face = next_face(up)) {
+        around += is_front(*face, Vec3d(up.direction)) ? -1 : 1;
     }
+    return around <= 0;
 }
 
 }  // namespace shlight

@@ -116,8 +116,8 @@ class FaceTree {
     static double height_over(const Face& face, const Vec3d& point);
     /// The faces first … last - 1 of a node are halved here.
     static std::uint32_t middle_of(std::uint32_t first, std::uint32_t last) { return first + (last - first) / 2; }
-    /// The first face that a ray meets, from whatever side, or null.
-    const Face* face_at(const Vec3d& point, const Vec3d& direction) const;
+    /// The first face that a ray meets, from whatever side, or null; the ray starts behind it from then on.
+    const Face* next_face(Ray& ray) const;
 
     /// Sets the part's members that tell how its faces differ.
     void find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const;

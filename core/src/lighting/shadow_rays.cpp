@@ -159,7 +159,7 @@ void ShadowRays::add_densities(std::size_t lit_index) {
         weighed_.weigh(set_shape(hit, set), hits_->frame[hit], hits_->view(hit), true);
         for (std::size_t i = 0; i < weighed_.size(); ++i) {
             const std::size_t ray = weighed_.number(i);
-            lobe_density_[ray] += rays_.drawn[ray].hidden_layer ? 0.0F : share * weighed_.density(i);
+            lobe_density_[ray] += share * weighed_.density(i);
         }
     }
 }

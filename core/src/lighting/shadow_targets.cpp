@@ -112,7 +112,9 @@ void LightTarget::draw_rectangle(const float* u, const float* v, std::uint32_t c
 
 void LightTarget::draw_point(const glm::dvec2& point, DrawnRays& rays) {
     if (has_faces_) {
-        push(face_sampler_.sample(point), rays);
+        if (const auto sample = face_sampler_.sample(point)) {
+            push(*sample, rays);
+        }
     } else {
         const LightSample sample = sampler_.sample(point);
         push(sample.direction, sample.distance, sample.weight, rays);
@@ -134,7 +136,9 @@ void LightTarget::meet(const RayVectors& directions, std::uint32_t count, RayKin
     for (std::uint32_t i = 0; i < count; ++i) {
         const Vec3d direction(directions.x[i], directions.y[i], directions.z[i]);
         if (has_faces_) {
-            push(face_sampler_.meets(direction), rays);
+            for (const FaceSample& face : face_sampler_.meet(direction)) {
+                push(face, rays);
+            }
             continue;
         }
         const std::optional<double> distance = direction.z > 0 ? sampler_.meets(direction) : std::nullopt;
@@ -167,12 +171,10 @@ void LightTarget::push(const Vec3d& direction, double distance, double weight, D
     }
 }
 
-void LightTarget::push(const std::optional<FaceSample>& sample, DrawnRays& rays) const {
-    if (sample) {
-        rays.push({Vec3f(frame_->to_world(sample->direction)), static_cast<float>(sample->density), 1, sample->hidden},
-                  start_->along(sample->direction));
-        rays.color.push_back(glm::abs(sample->radiance));  // ShadowedLight sums up absolute values
-    }
+void LightTarget::push(const FaceSample& sample, DrawnRays& rays) const {
+    rays.push({Vec3f(frame_->to_world(sample.direction)), static_cast<float>(sample.density), 1, sample.hidden},
+              start_->along(sample.direction));
+    rays.color.push_back(glm::abs(sample.radiance));  // ShadowedLight sums up absolute values
 }
 
 Rgb LightTarget::strength() const {

@@ -33,7 +33,7 @@ struct DrawnRay {
     float light_density;  ///< per solid angle, of the points that the light draws; 0: of an environment, see
                           ///< find_radiance
     float radiance;       ///< the light's there ÷ ShadowTarget::strength()
-    bool hidden_layer;    ///< behind another layer of the light, as only rays that the light draws are
+    bool hidden_layer;    ///< behind another layer of the light
 };
 
 /// The shadow rays of many hits.
@@ -110,7 +110,7 @@ class LightTarget : public ShadowTarget {
     void draw_rectangle(const float* u, const float* v, std::uint32_t count, DrawnRays& rays);
     void draw_point(const glm::dvec2& point, DrawnRays& rays);
     void push(const Vec3d& direction, double distance, double weight, DrawnRays& rays) const;
-    void push(const std::optional<FaceSample>& sample, DrawnRays& rays) const;
+    void push(const FaceSample& sample, DrawnRays& rays) const;
     void push(const LightPointArrays& points, std::uint32_t count, DrawnRays& rays) const;
     void follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays);
 

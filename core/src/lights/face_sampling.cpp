@@ -115,28 +115,35 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
     if (!(density > 0) || !std::isfinite(density) || !(direction.z > 0)) {
         return std::nullopt;
     }
-    const bool hidden = faces_->face_at(viewpoint_.start, frame_.origin + way - viewpoint_.start) != &face;
+    Ray ray = {Vec3f(viewpoint_.start), 0, Vec3f(frame_.origin + way - viewpoint_.start)};
+    const bool hidden = faces_->next_face(ray) != &face;
     return FaceSample{direction, density, face.radiance, hidden};
 }
 
-std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) {
+std::span<const FaceSample> FaceSampler::meet(const Vec3d& direction) {
+    met_.clear();
     const Vec3d world = frame_.to_world(direction);
-    const FaceTree::Face* face = faces_->face_at(viewpoint_.start, world);
-    if (face == nullptr || !(direction.z > 0)) {
-        return std::nullopt;
+    Ray ray = {Vec3f(viewpoint_.start), 0, Vec3f(world)};
+    bool hidden = false;
+    while (const FaceTree::Face* face = direction.z > 0 ? faces_->next_face(ray) : nullptr) {
+        const double density = density_towards(*face, direction, world);
+        if (density > 0 && std::isfinite(density)) {
+            met_.push_back({direction, density, face->radiance, hidden});
+        }
+        hidden = true;
     }
-    const Vec3d normal = glm::cross(face->b - face->a, face->c - face->a);
-    const double along = glm::dot(normal, face->a - frame_.origin) / glm::dot(normal, world);
-    double density = density_over(*face, along * world);
-    if (density > 0 && is_near(*face)) {
-        look_at(*face);
+    return met_;
+}
+
+double FaceSampler::density_towards(const FaceTree::Face& face, const Vec3d& direction, const Vec3d& world) {
+    const Vec3d normal = glm::cross(face.b - face.a, face.c - face.a);
+    const double along = glm::dot(normal, face.a - frame_.origin) / glm::dot(normal, world);
+    double density = density_over(face, along * world);
+    if (density > 0 && is_near(face)) {
+        look_at(face);
         density = 1 / polygon_.weight(direction);
     }
-    if (!(density > 0) || !std::isfinite(density)) {
-        return std::nullopt;
-    }
-    density *= probability(static_cast<std::uint32_t>(face - faces_->faces_.data()));
-    return FaceSample{direction, density, face->radiance, false};
+    return density * probability(static_cast<std::uint32_t>(&face - faces_->faces_.data()));
 }
 
 double FaceSampler::probability(std::uint32_t leaf) const {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,8 +34,8 @@ class FaceSampler {
     void reset(const FaceTree& faces, const ShadingFrame& frame, double error);
     /// Nothing if the face that a point of the unit square belongs to is seen edge-on or from behind.
     std::optional<FaceSample> sample(const glm::dvec2& point);
-    /// The first face in a direction, if it shines on the hit.
-    std::optional<FaceSample> meets(const Vec3d& direction);
+    /// The faces in a direction that shine on the hit if no other is before them, from the nearest on.
+    std::span<const FaceSample> meet(const Vec3d& direction);
     /// Solid angle of the faces, about.
     double solid_angle() const { return solid_angle_; }
 
@@ -61,6 +62,9 @@ class FaceSampler {
     void look_at(const FaceTree::Face& face);
     /// A way to a face from a point of the unit square, and its density per solid angle; 0 where it does not shine.
     std::pair<Vec3d, double> way_to(const FaceTree::Face& face, const glm::dvec2& point);
+    /// Density with which a direction, which meets a face, is drawn for its sake; NaN or 0 where it does not shine.
+    /// world: the direction there.
+    double density_towards(const FaceTree::Face& face, const Vec3d& direction, const Vec3d& world);
     /// Density of a way to a point of a face that is drawn evenly over its area; 0 where it does not shine.
     double density_over(const FaceTree::Face& face, const Vec3d& way) const;
 
@@ -72,6 +76,7 @@ class FaceSampler {
 
     const FaceTree* faces_ = nullptr;
     std::vector<Part> parts_;  // that shine on the hit
+    std::vector<FaceSample> met_;
     ShadingFrame frame_{};
     FaceViewpoint viewpoint_{};
     double solid_angle_ = 0;
