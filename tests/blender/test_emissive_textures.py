@@ -117,6 +117,22 @@ def test_a_screen_lights_floors_as_in_cycles(studio: Any, pixels: Array, is_floa
     studio.compare(mean=5e-3, error=2e-3)
 
 
+@pytest.mark.parametrize("roughness", [0.02, 0.3])
+def test_a_glossy_floor_shows_the_near_side_of_a_body(studio: Any, roughness: float) -> None:
+    """What is darkest of the body is left out of the light, so that the rest encloses nothing and shines to its inside,
+    which a mirror must not show.
+    """
+    material = studio.material("ShaderNodeEmission")
+    tree = material.node_tree
+    place, gradient = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeTexGradient")
+    tree.links.new(place.outputs["Generated"], gradient.inputs["Vector"])
+    tree.links.new(gradient.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    studio.box((2, 2, 2), material, location=(0, 0, 1.2), rotation_euler=(0, -0.6, 0.3))
+    studio.plane(8, studio.material("ShaderNodeBsdfGlossy", "Floor", Roughness=roughness), name="Floor")
+    studio.camera((3, -7, 4), (0, 0, 0.5))
+    studio.compare(mean=5e-3, error=0.02)
+
+
 def mapped(made: Any, vector_type: str, uv_map: str) -> None:
     """Puts a Mapping node that shifts, turns and scales between a UV map and the picture."""
     tree = made.data.materials[0].node_tree

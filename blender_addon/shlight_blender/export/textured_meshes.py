@@ -27,7 +27,7 @@ Radiance = Callable[[Array], Array]  # of places (n, c), linear RGB (n, 3), or (
 
 # Error that the pieces, and then their colours, may have: root mean square ÷ that of the radiance.
 TOLERANCE = 0.05
-MOST_PIECES = 256
+MOST_PIECES = 1024
 MOST_COLORS = 12
 # Quarterings into parts whose means are kept, at most, and how many more there are to the samples of each mean.
 MOST_LEVELS = 7
