@@ -62,13 +62,13 @@ def triangle_tangents(
     signs = np.repeat(sign, 3)
     told_by = np.concatenate([np.concatenate([p, n, uv], axis=-1).reshape(-1, 8), signs[:, None]], axis=1)
     group = _equal_rows(told_by)
-    mean = np.stack([np.bincount(group, each) for each in weighed.reshape(-1, 3).T], axis=1)
+    mean = np.stack([np.bincount(group, each) for each in weighed.reshape(-1, 3).T], axis=1).astype(np.float64)
     found = np.concatenate([unit(mean, 0.0)[group], signs[:, None]], axis=1)
     return found.reshape(-1, 3, 4).astype(np.float32)
 
 
 def _equal_rows(rows: NDArray[np.float64]) -> NDArray[np.intp]:
-    """A number for each row, which equal ones have in common. Their bytes are sorted, three times as fast as numbers."""
+    """A number for each row, which equal ones have in common. Bytes are sorted three times as fast as numbers."""
     single = rows.astype(np.float32) + np.float32(0.0)  # of -0 and 0 the same bytes
     whole = single.view(np.dtype((np.void, single.itemsize * single.shape[1])))
     group: NDArray[np.intp] = np.unique(whole, return_inverse=True)[1].reshape(-1)
