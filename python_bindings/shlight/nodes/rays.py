@@ -30,8 +30,8 @@ Replace = Callable[[Step], Value | None]
 Replaced = MutableMapping[Step, tuple[Value, ...] | None]
 
 
-# What `unfiltered` has found, which expressions that bend bent ones share. If each copied all that is below it, each of
-# some nodes in a row would double what there is.
+# `unfiltered` keeps here what it has found, since expressions that bend bent ones share it. If each copied all that is
+# below it, each of some nodes in a row would double what there is.
 _UNFILTERED: Replaced = WeakKeyDictionary()
 
 
