@@ -69,10 +69,8 @@ void FaceSum::look() {
         const std::uint32_t node = opened_.back();
         opened_.pop_back();
         const bool is_leaf = faces_->nodes_[node].first_child == FaceTree::kLeaf;
-        const FacePart& part = faces_->nodes_[node].part;
-        const PartView seen(part, *frame_, front_only_, is_leaf);
-        // The light of a level part is that of rounding, and would be asked for face by face.
-        if (seen.hidden || seen.is_level(part, clearance_)) {
+        const PartView seen(faces_->nodes_[node].part, *frame_, *viewpoint_, is_leaf);
+        if (seen.hidden) {
             continue;
         }
         if (seen.width > kWide && !is_leaf) {
@@ -87,7 +85,7 @@ void FaceSum::look() {
 FaceSum::SeenPart FaceSum::seen_part(std::uint32_t node, const PartView& seen) const {
     const FacePart& part = faces_->nodes_[node].part;
     const double both = seen.one_side ? std::abs(seen.facing) : shown_area(part, seen);
-    const double shown = front_only_ ? 0.5 * (both + seen.facing) : both;
+    const double shown = viewpoint_->front_only ? 0.5 * (both + seen.facing) : both;
     const double limit = seen.width > 1 ? 1 / (seen.width * seen.width) : 1;  // no nearer than the part's radius
     const double scale = limit * seen.nearness * seen.nearness;
     // Radiance may be negative; power is that of the side which the area vector shows.
@@ -176,13 +174,13 @@ void FaceSum::open_worst(double allowed, Vec3d& near_light, std::vector<NearFace
 
 void FaceSum::add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const {
     const double height = FaceTree::height_over(face, frame_->origin);
-    if (!(std::abs(height) > clearance_)) {
+    if (!(std::abs(height) > viewpoint_->clearance)) {
         return;
     }
     const std::array<Vec3d, 3> corners = {frame_->point_to_local(face.a), frame_->point_to_local(face.b),
                                           frame_->point_to_local(face.c)};
     const bool rises = std::ranges::any_of(corners, [](const Vec3d& corner) { return corner.z > 0; });
-    if (rises && (height > 0 || !front_only_)) {
+    if (rises && (height > 0 || !viewpoint_->front_only)) {
         near.push_back({corners, face.radiance});
     }
 }
@@ -194,8 +192,7 @@ void FaceSum::add_up(const FaceTree& faces, const Vec3d& view, const ShadingFram
     frame_ = &frame;
     lobes_ = lobes;
     view_ = view;
-    front_only_ = viewpoint.front_only;
-    clearance_ = viewpoint.clearance;
+    viewpoint_ = &viewpoint;
     cut_.clear();
     values_.clear();
     opened_.assign(1, 0);

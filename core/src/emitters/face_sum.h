@@ -86,8 +86,7 @@ class FaceSum {
     const ShadingFrame* frame_ = nullptr;
     std::span<SummedLobe> lobes_;
     Vec3d view_{0};
-    bool front_only_ = false;
-    double clearance_ = 0;  // from the plane of a face, below which the hit is on it
+    const FaceViewpoint* viewpoint_ = nullptr;
     std::vector<std::uint32_t> opened_;
     std::vector<SeenPart> seen_;
     Ways ways_;                        // of these

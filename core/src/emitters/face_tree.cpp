@@ -14,9 +14,16 @@ namespace {
 /// Faces of a node that are worth asking whether to stop.
 constexpr std::uint32_t kFacesBetweenStops = 1 << 12;
 
+/// Whether the hit is level with each of the part's faces (FaceViewpoint::clearance). One by one they would be asked
+/// for nothing but rounding.
+bool is_level(const FacePart& part, const PartView& seen, double clearance) {
+    const double height = std::abs(seen.facing) * seen.distance / part.shown;
+    return height + part.thickness + part.bend * (seen.distance + part.radius) <= clearance;
+}
+
 }  // namespace
 
-PartView::PartView(const FacePart& part, const ShadingFrame& frame, bool front_only, bool is_face)
+PartView::PartView(const FacePart& part, const ShadingFrame& frame, const FaceViewpoint& viewpoint, bool is_face)
     : way(part.center - frame.origin),
       distance(std::max({glm::length(way), 1e-3 * part.radius, std::numeric_limits<double>::min()})),
       nearness(1 / distance),
@@ -26,7 +33,8 @@ PartView::PartView(const FacePart& part, const ShadingFrame& frame, bool front_o
     const double turn = part.bend + width;
     // All points of a plane have the hit on the same side.
     one_side = std::abs(facing) > turn * part.shown || (is_face && width < 1);
-    hidden = rise < -width || (front_only && facing < 0 && (one_side || is_face)) || !(part.area > 0);
+    const bool from_behind = viewpoint.front_only && facing < 0 && (one_side || is_face);
+    hidden = rise < -width || from_behind || !(part.area > 0) || is_level(part, *this, viewpoint.clearance);
     unclear = std::min(1.0, turn) * part.shown + (part.area - part.shown);
 }
 

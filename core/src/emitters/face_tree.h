@@ -53,8 +53,8 @@ struct FaceViewpoint {
 
 /// A part as a hit sees it.
 struct PartView {
-    /// front_only: the part's faces shine to their outer side only; is_face: there is one.
-    PartView(const FacePart& part, const ShadingFrame& frame, bool front_only, bool is_face);
+    /// viewpoint: of the frame's origin. is_face: the part is one face.
+    PartView(const FacePart& part, const ShadingFrame& frame, const FaceViewpoint& viewpoint, bool is_face);
 
     Vec3d way;        ///< from the hit
     double distance;  ///< > 0
@@ -65,12 +65,6 @@ struct PartView {
     double unclear;   ///< and may show, if its faces do not all turn the same side to the hit
     bool one_side;    ///< they do
     bool hidden;      ///< nothing of it shines on the hit
-
-    /// Whether the hit is level with the part's every face (FaceViewpoint::clearance): they lie in one plane with it.
-    bool is_level(const FacePart& part, double clearance) const {
-        const double height = std::abs(facing) * distance / part.shown;
-        return height + part.thickness + part.bend * (distance + part.radius) <= clearance;
-    }
 };
 
 /// Immutable; any number of threads may read it.

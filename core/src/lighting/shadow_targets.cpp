@@ -135,14 +135,16 @@ void LightTarget::meet(const RayVectors& directions, std::uint32_t count, RayKin
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const Vec3d direction(directions.x[i], directions.y[i], directions.z[i]);
+        if (!(direction.z > 0)) {
+            continue;
+        }
         if (has_faces_) {
             for (const FaceSample& face : face_sampler_.meet(direction)) {
                 push(face, rays);
             }
             continue;
         }
-        const std::optional<double> distance = direction.z > 0 ? sampler_.meets(direction) : std::nullopt;
-        if (distance) {
+        if (const std::optional<double> distance = sampler_.meets(direction)) {
             push(direction, *distance, sampler_.solid_angle(), rays);
         }
     }

@@ -125,7 +125,7 @@ std::span<const FaceSample> FaceSampler::meet(const Vec3d& direction) {
     const Vec3d world = frame_.to_world(direction);
     Ray ray = {Vec3f(viewpoint_.start), 0, Vec3f(world)};
     bool hidden = false;
-    while (const FaceTree::Face* face = direction.z > 0 ? faces_->next_face(ray) : nullptr) {
+    while (const FaceTree::Face* face = faces_->next_face(ray)) {
         const double density = density_towards(*face, direction, world);
         if (density > 0 && std::isfinite(density)) {
             met_.push_back({direction, density, face->radiance, hidden});

@@ -34,7 +34,8 @@ class FaceSampler {
     void reset(const FaceTree& faces, const ShadingFrame& frame, double error);
     /// Nothing if the face that a point of the unit square belongs to is seen edge-on or from behind.
     std::optional<FaceSample> sample(const glm::dvec2& point);
-    /// The faces in a direction that shine on the hit if no other is before them, from the nearest on.
+    /// The faces in a direction above the horizon that shine on the hit if no other is before them, from the nearest
+    /// on.
     std::span<const FaceSample> meet(const Vec3d& direction);
     /// Solid angle of the faces, about.
     double solid_angle() const { return solid_angle_; }
@@ -44,7 +45,7 @@ class FaceSampler {
     double importance(const FaceTree::Node& node) const { return importance(node, view(node)); }
     double importance(const FaceTree::Node& node, const PartView& seen) const;
     PartView view(const FaceTree::Node& node) const {
-        return {node.part, frame_, viewpoint_.front_only, node.first_child == FaceTree::kLeaf};
+        return {node.part, frame_, viewpoint_, node.first_child == FaceTree::kLeaf};
     }
     /// The same of a face that is near.
     double importance_of_near(const FaceTree::Node& node) const;
