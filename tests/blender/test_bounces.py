@@ -78,6 +78,25 @@ def test_what_bounces_on_bent_normals(studio: Any, color: tuple[float, float, fl
     compare(studio, mean=1e-2, error=5e-3)
 
 
+def test_bumps_count_where_light_comes_from(studio: Any) -> None:
+    """A floor beside a wall that only it sees, whose steep bumps make it half as bright."""
+    bumped = studio.material("ShaderNodeBsdfDiffuse", "Bumped", Color=(0.8, 0.8, 0.8))
+    tree = bumped.node_tree
+    noise, bump = tree.nodes.new("ShaderNodeTexNoise"), tree.nodes.new("ShaderNodeBump")
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 9.0, 0.0
+    bump.inputs["Distance"].default_value = 2.0
+    shader = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
+    tree.links.new(noise.outputs[0], bump.inputs["Height"])
+    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+    studio.plane(2, studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8)))
+    wall = studio.plane(4, bumped, location=(1.2, 0, 1), rotation_euler=(0, -np.pi / 2, 0))
+    wall.visible_camera = False
+    studio.lamp("SUN", 3, (0, 0, 5), rotation_euler=(0, -1.45, 0), angle=0.1)
+    studio.camera(location=(0, -3, 3), target=(0, 0, 0.2))
+    studio.scene.shlight.max_bounces = 1
+    compare(studio, mean=1e-2, error=5e-3)
+
+
 def test_what_bounces_is_clamped_as_in_cycles(studio: Any) -> None:
     """A bright square is seen in a mirror, whole, and in another mirror there, and through glass: cut."""
     glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(1, 1, 1), Roughness=0.0, IOR=1.5)

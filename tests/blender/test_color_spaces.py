@@ -65,3 +65,20 @@ def test_a_picture_in_another_space(studio: Any, space: str, kind: str) -> None:
     studio.scene.cycles.samples = 512  # with half as many its noise where texels meet is 1e-4
     # Cycles keeps bytes as bytes of sRGB: half a step of 255 of values down to 0.1.
     studio.compare(mean=3e-3, error=1e-4)
+
+
+@pytest.mark.parametrize("output", ["Color", "Alpha"])
+def test_a_missing_picture_in_another_space(studio: Any, output: str) -> None:
+    """Before Blender 5.2 it is black without alpha, to the least step of its kind of pixels; later magenta."""
+    material = studio.material("ShaderNodeEmission")
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.new("Gone", 1, 1)
+    node.image.source, node.image.filepath = "FILE", "//gone/nowhere.png"
+    node.image.colorspace_settings.name = "Filmic sRGB"
+    tree.links.new(node.outputs[output], tree.nodes["Emission"].inputs["Color"])
+    studio.plane(material=material)
+    studio.camera((0, 0, 4), (0, 0, 0))
+    assert np.abs(studio.render("SHLIGHT") - studio.render("CYCLES")).max() <= 1 / 255 + 1e-6
+    color = "black" if bpy.app.version < (5, 2, 0) else "magenta"
+    assert any(f"is missing; {color} is used" in line for line in studio.messages())

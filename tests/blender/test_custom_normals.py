@@ -52,6 +52,22 @@ def test_normals_on_the_back_of_their_faces(studio: Any, turn: float, mirror: in
         assert np.abs(image - reference).mean() <= 5e-3
 
 
+@pytest.mark.parametrize("shader", ["ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfToon"])
+def test_a_normal_below_the_surface_shows_no_light(studio: Any, shader: str) -> None:
+    """It leans away from the viewer, whose mirror image is above the surface."""
+    material = studio.material(shader)
+    tree = material.node_tree
+    bent = tree.nodes.new("ShaderNodeNormalMap")
+    bent.inputs["Color"].default_value = (0.5, 0.9, 0.3, 1.0)
+    node = next(node for node in tree.nodes if "BSDF" in node.type)
+    tree.links.new(bent.outputs["Normal"], node.inputs["Normal"])
+    floor = studio.plane(20, material)
+    floor.data.uv_layers.new().data.foreach_set("uv", [0, 0, 1, 0, 1, 1, 0, 1])
+    studio.camera((0, -4, 2), (0, 0, 0), lens=200)
+    studio.world((1.0, 0.8, 0.6))
+    assert np.abs(studio.render("SHLIGHT") - studio.render("CYCLES")).mean() <= 1e-3
+
+
 def test_normals_of_a_stretched_object(studio: Any) -> None:
     """A few smooth faces, whose normals Cycles interpolates in the world unless the mesh has instances."""
     studio.ball(material=studio.material("ShaderNodeBsdfAnisotropic", Roughness=0.5), rings=4, scale=(0.5, 0.5, 2))

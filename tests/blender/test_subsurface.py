@@ -89,15 +89,21 @@ def test_a_principled_body_on_a_floor(studio: Any, bounces: int) -> None:
 
 
 @pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="bodies of little radius are brighter there; why is not known")
+@pytest.mark.parametrize("bumped", [False, True])
 @pytest.mark.parametrize("method", ["BURLEY", pytest.param("RANDOM_WALK", marks=pytest.mark.slow)])
-def test_a_body_whose_normals_are_bent(studio: Any, method: str) -> None:
-    """So far that the viewer's mirror image would be below the surface: Cycles turns them back."""
+def test_a_body_whose_normals_are_bent(studio: Any, method: str, bumped: bool) -> None:
+    """By a bump, or so far that the viewer's mirror image would be below the surface: Cycles turns them back."""
     inputs = {"Subsurface Weight": 1.0, "Subsurface Scale": 0.1, "Base Color": (0.8, 0.5, 0.3)}
     inputs["Specular IOR Level"] = 0.0
     material = studio.material(PRINCIPLED, **inputs)
     tree = material.node_tree
-    bent = tree.nodes.new("ShaderNodeNormalMap")
-    bent.inputs["Color"].default_value = (1.0, 0.1, 1.0, 1.0)
+    bent = tree.nodes.new("ShaderNodeBump" if bumped else "ShaderNodeNormalMap")
+    if bumped:
+        noise = tree.nodes.new("ShaderNodeTexNoise")
+        noise.inputs["Scale"].default_value, bent.inputs["Distance"].default_value = 8.0, 0.5
+        tree.links.new(noise.outputs[0], bent.inputs["Height"])
+    else:
+        bent.inputs["Color"].default_value = (1.0, 0.1, 1.0, 1.0)
     shader = tree.nodes["Principled BSDF"]
     shader.subsurface_method = method
     tree.links.new(bent.outputs["Normal"], shader.inputs["Normal"])

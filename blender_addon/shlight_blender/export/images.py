@@ -86,9 +86,9 @@ Texture: TypeAlias = "_core.TexturePixels | Future[_core.TexturePixels]"
 
 
 @cache
-def missing_texture() -> _core.TexturePixels:
-    """The pixel that Cycles shows in place of a picture, which fades towards its edges where nothing is beyond them."""
-    return texture_pixels(np.array([[(1.0, 0.0, 1.0)]], dtype=np.float32))
+def missing_texture(*, black: bool = False) -> _core.TexturePixels:
+    """The pixel that Cycles shows in place of a picture: magenta, or black without alpha."""
+    return texture_pixels(np.array([[(0.0, 0.0, 0.0, 0.0) if black else (1.0, 0.0, 1.0, 1.0)]], dtype=np.float32))
 
 
 class TextureCache:

@@ -10,7 +10,7 @@ from shlight import nodes
 from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import Number, clamp, dot, equal, maximum, normalize, operation, select, sqrt
 
-from ..compat import MISSING_PICTURE_FADES
+from ..compat import MISSING_PICTURE_IS_PIXEL
 from ..names import name_of
 from ..report import Effect
 from .cell_nodes import CELL_NODES
@@ -23,6 +23,7 @@ from .images import (
     has_plain_file,
     is_known,
     missing_texture,
+    needs_conversion,
 )
 from .mesh_attributes import GENERATED
 from .nodes import Expression, NodeInputs, ReadNode
@@ -37,7 +38,7 @@ FIRST_TILE = 1001
 def image_texture(inputs: NodeInputs) -> Color | Value:
     """An Image Texture node."""
     textures = _textures(inputs)
-    is_even = textures is missing_texture() and not (MISSING_PICTURE_FADES and _extension(inputs.node) == "clip")
+    is_even = textures is missing_texture() and not (MISSING_PICTURE_IS_PIXEL and _extension(inputs.node) == "clip")
     place = nodes.values.vector((0.5, 0.5, 0.0)) if is_even else inputs.vector_or("Vector", nodes.uv(""))
     found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found
@@ -81,8 +82,11 @@ def _textures(inputs: NodeInputs) -> Any:
             inputs.remark(f"images of the kind {image.source} are not supported; the picture in memory is used")
         found = found or datablock_texture(image, use)
     if not found:
-        inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; magenta is used", Effect.THING)
-    return found or missing_texture()
+        black = MISSING_PICTURE_IS_PIXEL and needs_conversion(space)
+        color = "black" if black else "magenta"
+        inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; {color} is used", Effect.THING)
+        found = missing_texture(black=black)
+    return found
 
 
 def _extension(node: Any) -> str:

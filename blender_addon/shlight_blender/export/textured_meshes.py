@@ -105,8 +105,8 @@ def sampling_levels(texels: Array) -> IntArray:
     return levels
 
 
-def _pyramids(radiance: Radiance, uvs: Array, kept: int, finer: int) -> list[_Pyramid]:
-    """The pyramids of triangles (n, 3, c), which are sampled together."""
+def _sampled(radiance: Radiance, uvs: Array, kept: int, finer: int) -> tuple[Array, Array]:
+    """Means (n, 4^kept, 3 or 6) and mean squares (n, 4^kept) of the parts of triangles (n, 3, c)."""
     parts = np.matmul(corners_at(kept), uvs[:, None]).reshape(-1, *uvs.shape[1:])
     centers = corners_at(finer).mean(axis=1)
     step = max(SAMPLES_AT_ONCE >> (2 * finer), 1)
@@ -117,7 +117,13 @@ def _pyramids(radiance: Radiance, uvs: Array, kept: int, finer: int) -> list[_Py
         mean.append(found.mean(axis=1))
         square.append((found**2).sum(axis=2).mean(axis=1))
     count, sides = len(uvs), mean[0].shape[1]
-    means, squares = [np.concatenate(mean).reshape(count, -1, sides)], [np.concatenate(square).reshape(count, -1)]
+    return np.concatenate(mean).reshape(count, -1, sides), np.concatenate(square).reshape(count, -1)
+
+
+def _pyramids(radiance: Radiance, uvs: Array, kept: int, finer: int) -> list[_Pyramid]:
+    """The pyramids of triangles (n, 3, c), which are sampled together."""
+    mean, square = _sampled(radiance, uvs, kept, finer)
+    means, squares, (count, _, sides) = [mean], [square], mean.shape
     for _ in range(kept):
         means.insert(0, means[0].reshape(count, -1, 4, sides).mean(axis=2))
         squares.insert(0, squares[0].reshape(count, -1, 4).mean(axis=2))
@@ -130,6 +136,8 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
     uvs: (n, 3, c), what `radiance` is a function of at the corners; levels: (n,), from `sampling_levels`; area: (n,).
     At most `most` pieces, or n if that is more.
     """
+    if len(uvs) >= most:
+        return _whole(radiance, uvs, levels, area)
     kept = np.clip(levels - FINER_LEVELS, 0, MOST_LEVELS)
     while (4.0**kept).sum() > MOST_PARTS and kept.max() > 0:
         kept = np.minimum(kept, kept.max() - 1)
@@ -150,6 +158,19 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
     whole = sum(area[triangle] * float(pyramid.squares[0][0]) for triangle, pyramid in sorted(pyramids.items()))
     places, left = divided([part(triangle, 0, 0) for triangle in range(len(uvs))], quarters, TOLERANCE**2 * whole, most)
     return _gathered(places, pyramids, area, share_of(left, whole))
+
+
+def _whole(radiance: Radiance, uvs: Array, levels: IntArray, area: Array) -> Pieces:
+    """Triangles as pieces: there may be millions, so that none has an object of its own."""
+    means, squares = np.zeros((0, 0)), np.zeros(len(uvs))
+    for level in np.unique(levels).tolist():
+        chosen = np.flatnonzero(levels == level)
+        mean, square = _sampled(radiance, uvs[chosen], 0, level)
+        means = means if means.size else np.zeros((len(uvs), mean.shape[2]))
+        means[chosen], squares[chosen] = mean[:, 0], square[:, 0]
+    left = area @ np.maximum(squares - (means**2).sum(axis=1), 0.0)
+    corners = np.broadcast_to(np.eye(3), (len(uvs), 3, 3))
+    return Pieces(np.arange(len(uvs)), corners, means, area, share_of(float(left), float(area @ squares)))
 
 
 def _gathered(places: list[tuple[int, int, int]], pyramids: dict[int, _Pyramid], area: Array, error: float) -> Pieces:
@@ -303,6 +324,8 @@ def _cut_surface(
 
 def _of_pieces(part: MeshArrays, pieces: Pieces, slots: NDArray[Any]) -> MeshArrays:
     """The pieces as triangles; corners at the same place are one vertex, so that neighbours share an edge."""
+    if len(pieces.triangle) == len(part.triangles):  # nothing is cut
+        return replace(part, material_indices=slots[np.argsort(pieces.triangle)].astype(np.int32))
     places = pieces.corners @ part.vertices[part.triangles[pieces.triangle]].astype(np.float64)
     vertices, index = np.unique(places.astype(np.float32).reshape(-1, 3), axis=0, return_inverse=True)
     normals = None

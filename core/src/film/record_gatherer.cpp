@@ -57,7 +57,7 @@ RecordGatherer::Shader::Shader(const RecordGatherer& gatherer)
       hits(gatherer.lighting_->lobe_stride, *gatherer.parts_) {}
 
 RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths,
-                               bool shadows, LightCells& cells, const LightParts& parts)
+                               bool shadows, LightCells& cells, const LightParts& parts, double spread)
     : scene_(&scene),
       lighting_(&lighting),
       paths_(paths),
@@ -65,6 +65,7 @@ RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& 
       parts_(&parts),
       light_count_(paths.max_bounces * paths.stored->parts),
       shadow_rays_(shadows ? 1 : 0),
+      spread_(spread),
       darkness_(light_count_, Rgb(0)),
       shaders_([this] { return Shader(*this); }) {}
 
@@ -77,10 +78,11 @@ void RecordGatherer::gather(std::span<const Place> places, std::size_t rays_acro
     for (std::size_t first = 0; first < places.size() && seconds_left() > 0; first += records_.size()) {
         const std::size_t count = std::min(records_at_once(first, start, seconds_left()), places.size() - first);
         records_.assign(count, {});
+        places_ = places.subspan(first, count);
         distances_.assign(count * rays_per_record_, std::numeric_limits<double>::infinity());
         parallel_for(count, threads, [&](std::size_t i) {
             end_if(stopped);
-            const Place& place = places[first + i];
+            const Place& place = places_[i];
             const auto own_seed = seed_of(place.cell);
             records_[i] = RecordRays(place.surface, rays_across, own_seed);
             meet(i, own_seed, shaders_.local());
@@ -105,8 +107,8 @@ void RecordGatherer::gather(std::span<const Place> places, std::size_t rays_acro
             const std::size_t rays = i * rays_per_record_;
             finished[i] = records_[i].record(std::span(distances_).subspan(rays, rays_per_record_),
                                              std::span(light_).subspan(rays, rays_per_record_), light_count_,
-                                             paths_.stored->parts, places[first + i].reach);
-            finished[i].cell = places[first + i].cell;
+                                             paths_.stored->parts, places_[i].reach);
+            finished[i].cell = places_[i].cell;
         });
         std::ranges::move(finished, std::back_inserter(made));
     }
@@ -180,6 +182,7 @@ Ray RecordGatherer::ray_of(const Shaded& shaded) const {
 void RecordGatherer::shade(std::size_t first, Shader& shader) {
     const std::size_t count = std::min(kShadedAtOnce, shaded_.size() - first);
     shader.rays.clear();
+    shader.neighbours.clear();
     shader.seeds.clear();
     for (std::size_t i = 0; i < count; ++i) {
         const Shaded& shaded = shaded_[first + i];
@@ -188,8 +191,10 @@ void RecordGatherer::shade(std::size_t first, Shader& shader) {
             shader.seeds.push_back(end.is_own ? end.rank : hash(seed_of(end.cell), shaded.number));
         }
         shader.rays.push_back({ray_of(shaded), static_cast<std::uint32_t>(i % kGroupRays), shader.seeds.back()});
+        const double pixel = shaded.end == kNone ? 0.0 : places_[ends_[shaded.end].ray / rays_per_record_].pixel;
+        shader.neighbours.push_back({{}, {}, pixel, spread_});
     }
-    shader.surfaces.trace_scattered(shader.rays, kGroupRays, shader.hits, shader.light);
+    shader.surfaces.trace_scattered(shader.rays, shader.neighbours, kGroupRays, shader.hits, shader.light);
     shader.penumbrae.assign(shader.seeds.size(), LightBits::kAll);
     shader.lighting.add(shader.seeds, shader.penumbrae, {0, kGroupRays, shadow_rays_, 0}, shader.hits, shader.report);
     for (std::size_t hit = 0; hit < shader.hits.size(); ++hit) {

@@ -34,14 +34,16 @@ inline constexpr std::size_t kRecordsAtOnce = 1024;
 class RecordGatherer {
   public:
     /// cells: to which light is added; parts: that records tell apart. All must outlive this.
+    /// spread: what a pixel's width grows by along camera rays [1].
     RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths, bool shadows,
-                   LightCells& cells, const LightParts& parts);
+                   LightCells& cells, const LightParts& parts, double spread);
 
     /// A surface that gets a record.
     struct Place {
         SurfacePoint surface;
         WorldCell cell;  ///< that the record stands for
         double reach;    ///< see RecordRays::record()
+        double pixel;    ///< the width of a pixel that sees the surface [m]
     };
 
     /// A record at each place by rays_across² rays, or at as many of the first as there is time for; seed: of them all;
@@ -80,6 +82,7 @@ class RecordGatherer {
         DirectLighting lighting;
         Hits hits;
         std::vector<CameraRay> rays;
+        std::vector<NeighbourRays> neighbours;
         std::vector<RayLight> light;  // by ray and number of bounces
         std::vector<std::uint32_t> seeds, penumbrae;
         std::vector<RayHit> met;
@@ -105,8 +108,10 @@ class RecordGatherer {
     const LightParts* parts_;
     std::size_t light_count_;    // numbers by which the light of a ray is told apart, see StoredLight
     std::uint32_t shadow_rays_;  // of each ray's hits, for each light
+    double spread_;
     std::size_t rays_per_record_ = 0;
     std::uint32_t seed_ = 0;
+    std::span<const Place> places_;  // of the records
     std::vector<RecordRays> records_;
     std::vector<double> distances_;  // that rays go
     std::vector<End> ends_;

@@ -86,7 +86,7 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
           return Finder(*picture_, seen);
       }),
       gatherer_(*picture.scene, picture.lighting_of_records(), paths_, picture.settings.shadow_rays > 0, stored.cells,
-                stored.parts > 1 ? picture.parts : kWholeLight) {
+                stored.parts > 1 ? picture.parts : kWholeLight, picture.pixel_width(1) - picture.pixel_width(0)) {
     stored.records.begin_picture();
     double sum = 0;
     for (std::size_t i = 0; i < image.size() / 4; ++i) {
@@ -191,7 +191,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     const double between = std::max(step * width / std::sqrt(cosine), surface.point.error);
     const int level = WorldLattice::level(between);
     row.seen.push_back(
-        {lattice_.cell(surface.point, level), level, surface.point, surface.bounces, threshold_ * scale});
+        {lattice_.cell(surface.point, level), level, surface.point, width, surface.bounces, threshold_ * scale});
 }
 
 std::vector<RecordPlacement::Wanted> RecordPlacement::find_wanted(std::vector<Seen> seen, int step,
@@ -248,7 +248,7 @@ std::optional<RecordPlacement::Wanted> RecordPlacement::wanted(std::span<const S
             return std::nullopt;
         }
     }
-    return Wanted{{point, cell, kGradientSteps * std::ldexp(1.0, level)}, level, allowed};
+    return Wanted{{point, cell, kGradientSteps * std::ldexp(1.0, level), nearest.pixel}, level, allowed};
 }
 
 void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {

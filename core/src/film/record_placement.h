@@ -44,6 +44,7 @@ class RecordPlacement {
         WorldCell cell;
         int level;  // of the cell
         SurfacePoint point;
+        double pixel;  // its width there [m]
         std::uint32_t bounces;
         Vec3d allowed;  // error of the light that a white diffuse surface reflects there
     };

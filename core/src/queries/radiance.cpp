@@ -160,7 +160,7 @@ void RadianceQuery::shade(std::span<const std::uint32_t> pixels, std::uint32_t f
     if (sees_lights_) {
         shader.surfaces.trace(shader.rays, {}, count, shader.hits, shader.light);
     } else {
-        shader.surfaces.trace_scattered(shader.rays, count, shader.hits, shader.light);
+        shader.surfaces.trace_scattered(shader.rays, {}, count, shader.hits, shader.light);
     }
     const auto shadow_rays = static_cast<std::uint32_t>(settings_->shadow_rays);
     shader.penumbrae.assign(pixels.size(), LightBits::kAll);

@@ -26,13 +26,13 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
           {light, hits.apart, rays_per_pixel, 0, 1}, hits);
 }
 
-void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::size_t rays_per_group, Hits& hits,
-                                     std::vector<RayLight>& light) {
+void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours,
+                                     std::size_t rays_per_group, Hits& hits, std::vector<RayLight>& light) {
     rays_ = rays;
     const Sink sink = {light, hits.apart, rays_per_group, 1, settings_.max_bounces};
     Segment beginning = {0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}, kDiffuseRay};
     beginning.diffused = beginning.filtered = true;
-    trace(beginning, {}, sink, hits);
+    trace(beginning, neighbours, sink, hits);
 }
 
 void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink,
@@ -69,7 +69,7 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
         if (!walks_.empty() || !probes_.empty()) {
             const std::size_t exits = surfaces_.size();
             leave_bodies();
-            run_programs({}, exits);
+            run_programs(neighbours, exits);
             pass_on(exits, sink);
         }
     }
@@ -198,7 +198,11 @@ void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std
 void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces) {
     const Material& material = scene_->materials()[surfaces_[surfaces.front()].point.material];
     const ShaderProgram& program = material.shader->program;
-    const bool differs = !neighbours.empty() && program.takes_differences();
+    const auto differ = [&](std::uint32_t i) {
+        return program.slope_width() > 0 ||
+               (program.takes_differences() && surfaces_[i].source == RaySource::camera);
+    };
+    const bool differs = !neighbours.empty() && std::ranges::any_of(surfaces, differ);
     places_.clear();
     beside_.clear();
     for (const std::uint32_t i : surfaces) {
@@ -405,7 +409,11 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
             const bool bumped = is_bumped(shape);
             const Vec3d before = bumped || lobe.leans_from ? leaning(surface, lobe, own) : Vec3d(0);
-            lobes.push_back({shape, lobe.translucent ? -own : own, weight * color(surface, lobe.weight),
+            // The surface shadows a lobe below it, of which only microfacets that face the viewer show light from above.
+            const bool is_seen = glm::dot(own, smooth) >= 0 || lobe.translucent ||
+                                 (is_glossy(shape) && glm::dot(own, surface.towards_viewer) > 0);
+            lobes.push_back({shape, lobe.translucent ? -own : own,
+                             is_seen ? weight * color(surface, lobe.weight) : Rgb(0),
                              lobe.several_bounces, lobe.translucent, bumped ? before : Vec3d(0), before});
         }
         return;

@@ -68,7 +68,7 @@ struct PathSettings {
     }
 };
 
-/// Camera rays beside another, as far away as its share of the pixel is wide.
+/// Camera rays beside another, as far away as its share of the pixel is wide. Those of other rays are not read.
 struct NeighbourRays {
     Ray right, below;
     double width, spread;  ///< a pixel's width [m] where the ray begins, and what it grows by along the ray [1]
@@ -113,8 +113,8 @@ class CameraSurfaces {
                Hits& hits, std::vector<RayLight>& light);
     /// The same for rays that surfaces scatter. light: of each ray what has bounced once, twice … max_bounces times.
     /// Each of these has parts of its own, by the same numbers.
-    void trace_scattered(std::span<const CameraRay> rays, std::size_t rays_per_group, Hits& hits,
-                         std::vector<RayLight>& light);
+    void trace_scattered(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours,
+                         std::size_t rays_per_group, Hits& hits, std::vector<RayLight>& light);
 
     /// The path of a camera ray from its beginning, a surface that reflects, or one that lets light through, to the
     /// next surface.
