@@ -199,8 +199,7 @@ void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std:
     const Material& material = scene_->materials()[surfaces_[surfaces.front()].point.material];
     const ShaderProgram& program = material.shader->program;
     const auto differ = [&](std::uint32_t i) {
-        return program.slope_width() > 0 ||
-               (program.takes_differences() && surfaces_[i].source == RaySource::camera);
+        return program.slope_width() > 0 || (program.takes_differences() && surfaces_[i].source == RaySource::camera);
     };
     const bool differs = !neighbours.empty() && std::ranges::any_of(surfaces, differ);
     places_.clear();
@@ -409,12 +408,13 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             const float weight = lobe.view_weight != nullptr ? (*lobe.view_weight)(cosine) : 1.0F;
             const bool bumped = is_bumped(shape);
             const Vec3d before = bumped || lobe.leans_from ? leaning(surface, lobe, own) : Vec3d(0);
-            // The surface shadows a lobe below it, of which only microfacets that face the viewer show light from above.
+            // The surface shadows a lobe below it, of which only microfacets that face the viewer show light from
+            // above.
             const bool is_seen = glm::dot(own, smooth) >= 0 || lobe.translucent ||
                                  (is_glossy(shape) && glm::dot(own, surface.towards_viewer) > 0);
             lobes.push_back({shape, lobe.translucent ? -own : own,
-                             is_seen ? weight * color(surface, lobe.weight) : Rgb(0),
-                             lobe.several_bounces, lobe.translucent, bumped ? before : Vec3d(0), before});
+                             is_seen ? weight * color(surface, lobe.weight) : Rgb(0), lobe.several_bounces,
+                             lobe.translucent, bumped ? before : Vec3d(0), before});
         }
         return;
     }
