@@ -96,7 +96,8 @@ void LightRecord::limit_radius(double wanted, double least, double most) {
         for (int c = 0; c < 3; ++c) {
             const glm::vec3 own(gradient[k][0][c], gradient[k][1][c], gradient[k][2][c]);
             const float change = glm::length(own) * static_cast<float>(radius);
-            const float factor = change > reflected[k][c] ? std::max(reflected[k][c], 0.0F) / change : 1.0F;
+            const float bound = std::max(reflected[k][c], 0.0F);  // the last bands may make it less than none
+            const float factor = change > bound ? bound / change : 1.0F;
             for (Rgb& axis : gradient[k]) {
                 axis[c] *= factor;
             }
