@@ -96,8 +96,8 @@ MAGIC_WRAPS_SCALED = VERSION >= (5, 2, 0)
 ANGLES_TURN = VERSION >= (5, 0, 0)
 # The normal of a tangent space has length 1, or that of what is interpolated between the normals of corners.
 TANGENT_SPACE_IS_UNIT = VERSION >= (5, 1, 0)
-# A missing picture is one of a pixel: it fades towards its edges where the texture is clipped there, and has no value in
-# a colour space that Cycles converts.
+# A missing picture is one of a pixel: it fades towards its edges where the texture is clipped there, and is black in a
+# colour space that Cycles converts.
 MISSING_PICTURE_IS_PIXEL = VERSION < (5, 2, 0)
 # An IES Texture interpolates at the edges of its table with the values there beyond them, or with 0.
 IES_KEEPS_EDGES = VERSION >= (5, 0, 1)

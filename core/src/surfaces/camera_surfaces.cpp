@@ -45,6 +45,7 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
     hits.apart.reset(sink.first_bounces > 0 ? sink.light.size() : rays_.size() / sink.rays_per_pixel);
     segments_.clear();
     parts_.clear();
+    met_by_ray_.assign(rays_.size(), 0);
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         if (rays_[i].ray.empty()) {
             continue;  // outside a panorama's image, which is opaque, as Cycles has it
@@ -113,6 +114,7 @@ void CameraSurfaces::meet(const Sink& sink) {
             add_emission(end, sink);
         } else {
             surfaces_.push_back(end);
+            ++met_by_ray_[end.ray];
         }
     }
     segments_.clear();

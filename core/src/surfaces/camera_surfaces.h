@@ -384,7 +384,7 @@ class CameraSurfaces {
     std::vector<Surface> surfaces_;
     std::vector<SubsurfaceWalk> walks_;
     std::vector<SubsurfaceProbe> probes_;
-    std::vector<std::uint32_t> order_, material_of_;
+    std::vector<std::uint32_t> order_, material_of_, met_by_ray_;
     std::vector<ShadedPlace> places_;
     std::vector<PlacesBeside> beside_;
     std::vector<float> results_;
