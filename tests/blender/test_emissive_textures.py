@@ -47,7 +47,9 @@ def cut_all(texture: Picture, area: Array, most: int = 300) -> Any:
 def test_pieces_keep_area_and_light(interpolation: str) -> None:
     pixels, area = np.random.default_rng(3).random((11, 17, 3)).astype(np.float32), np.array([2.0, 1.0])
     texture = Picture(pixels, interpolation)
-    whole, pieces = cut_all(texture, area, most=1), cut_all(texture, area)
+    whole, pieces, alone = (cut_all(texture, area, most) for most in (3, 300, 2))
+    np.testing.assert_allclose(alone.radiance, whole.radiance, rtol=1e-3)
+    assert alone.error == pytest.approx(whole.error, rel=1e-2)
     assert 290 <= len(pieces.area) <= 300
     assert pieces.area.sum() == pytest.approx(area.sum(), rel=1e-12)
     np.testing.assert_allclose(pieces.area @ pieces.radiance, area @ whole.radiance, rtol=1e-12)

@@ -92,7 +92,7 @@ def test_a_principled_body_on_a_floor(studio: Any, bounces: int) -> None:
 @pytest.mark.parametrize("bumped", [False, True])
 @pytest.mark.parametrize("method", ["BURLEY", pytest.param("RANDOM_WALK", marks=pytest.mark.slow)])
 def test_a_body_whose_normals_are_bent(studio: Any, method: str, bumped: bool) -> None:
-    """A bump bends them, or a map does so far that the viewer's mirror image would be below: Cycles turns those back."""
+    """A bump bends them, or a map does so far that the viewer's mirror image is below: Cycles turns those back."""
     inputs = {"Subsurface Weight": 1.0, "Subsurface Scale": 0.1, "Base Color": (0.8, 0.5, 0.3)}
     inputs["Specular IOR Level"] = 0.0
     material = studio.material(PRINCIPLED, **inputs)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 import trimesh
@@ -49,6 +51,31 @@ def test_a_closed_room_that_shines_everywhere_adds_up_its_reflections(bounces: i
     # Radiance is the same everywhere: what is left is the noise of 256 rays that are not drawn as the cosine.
     np.testing.assert_allclose(image, np.broadcast_to(expected, image.shape), rtol=0.02)
     np.testing.assert_allclose(image.mean(axis=(0, 1)), expected, rtol=1e-3)
+
+
+def test_cards_that_scatter_and_let_pass_are_a_walk_between_them() -> None:
+    """Paths of a ray multiply at each card, so that few of them are followed: their mean must stay."""
+    count, on, back, through, bounces = 6, 0.5, 0.25, 0.25, 3
+
+    @cache
+    def seen(place: int, way: int, left: int) -> float:
+        """A ray that leaves a card, and may be scattered `left` times, sees this much of the light of 1 all around."""
+        place += way
+        if not 0 <= place < count:
+            return 1.0
+        scattered = back * seen(place, -way, left - 1) + through * seen(place, way, left - 1) if left else 0.0
+        return on * seen(place, way, left) + scattered
+
+    scene = shlight.Scene()
+    card = nodes.lambert(back) + nodes.translucent(through) + nodes.transparent(on)
+    for i in range(count):
+        scene.add_mesh(1e4 * SQUARE - [0, 0, i], [(0, 1, 2), (0, 2, 3)], bsdf=card)
+    scene.set_environment((1, 1, 1))
+    to_world = np.eye(4)
+    to_world[2, 3] = 2
+    scene.set_camera(to_world, 0.5)
+    image = shlight.render(scene, 8, 8, max_bounces=bounces, transparent_bounces=64, pixel_samples=4)[..., :3]
+    assert image.mean() == pytest.approx(seen(-1, 1, bounces + 1), rel=2e-2)
 
 
 def room() -> shlight.Scene:

@@ -86,7 +86,7 @@ Texture: TypeAlias = "_core.TexturePixels | Future[_core.TexturePixels]"
 
 
 @cache
-def missing_texture(*, black: bool = False) -> _core.TexturePixels:
+def missing_texture(black: bool) -> _core.TexturePixels:
     """The pixel that Cycles shows in place of a picture: magenta, or black without alpha."""
     return texture_pixels(np.array([[(0.0, 0.0, 0.0, 0.0) if black else (1.0, 0.0, 1.0, 1.0)]], dtype=np.float32))
 
@@ -123,7 +123,7 @@ class TextureCache:
                 texture = make()
             except (OSError, ValueError):
                 self._broken.add(path)
-                return missing_texture()
+                return missing_texture(False)
             self._broken.discard(path)
             return texture
 

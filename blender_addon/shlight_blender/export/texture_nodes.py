@@ -38,7 +38,9 @@ FIRST_TILE = 1001
 def image_texture(inputs: NodeInputs) -> Color | Value:
     """An Image Texture node."""
     textures = _textures(inputs)
-    is_even = textures is missing_texture() and not (MISSING_PICTURE_IS_PIXEL and _extension(inputs.node) == "clip")
+    is_even = textures is missing_texture(False) and not (
+        MISSING_PICTURE_IS_PIXEL and _extension(inputs.node) == "clip"
+    )
     place = nodes.values.vector((0.5, 0.5, 0.0)) if is_even else inputs.vector_or("Vector", nodes.uv(""))
     found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found
@@ -67,7 +69,7 @@ def _textures(inputs: NodeInputs) -> Any:
     """The texture of a node's image, or several by tile; one that is missing is reported."""
     node, image = inputs.node, inputs.node.image
     if image is None:
-        return missing_texture()
+        return missing_texture(False)
     space = image.colorspace_settings.name
     if not is_known(space):
         inputs.remark(f"colour space {space} is unknown; taken for sRGB")
@@ -85,7 +87,7 @@ def _textures(inputs: NodeInputs) -> Any:
         black = MISSING_PICTURE_IS_PIXEL and needs_conversion(space)
         color = "black" if black else "magenta"
         inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; {color} is used", Effect.THING)
-        found = missing_texture(black=black)
+        found = missing_texture(black)
     return found
 
 

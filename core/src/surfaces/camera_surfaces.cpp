@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lobes/refraction.h"
+#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
@@ -256,6 +257,20 @@ void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
     add_light(surface, LightKind::emission, material.group, surface.throughput * emission, sink);
 }
 
+/// Paths of a ray multiply where surfaces scatter them and let them pass too.
+float CameraSurfaces::share_in_crowd(const Surface& surface) const {
+    constexpr float kCrowd = 16;
+    const float crowd = static_cast<float>(met_by_ray_[surface.ray]) / kCrowd;
+    return surface.source == RaySource::scattered && crowd > 1 ? 1 / (crowd * crowd) : 1.0F;
+}
+
+bool CameraSurfaces::passes_crowd(const Surface& surface) const {
+    constexpr std::uint32_t kPassSeed = 0xC0000000U;
+    const CameraRay& ray = rays_[surface.ray];
+    const std::uint32_t place = hash(hash(surface.bounces, surface.hit.triangle), kPassSeed + surface.depth);
+    return sobol_beyond(ray.sample, hash(ray.seed, place)).x < double{share_in_crowd(surface)};
+}
+
 /// Emission of the surfaces met last, and the paths that go on from there.
 void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
     const std::size_t last = surfaces_.size();
@@ -269,11 +284,11 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
         add_emission(surface, sink);
         const bool ends = surface.depth > settings_.transparent_bounces;
         const Rgb throughput = ends ? Rgb(0) : surface.throughput * transparency(surface);
-        if (throughput != Rgb(0)) {
+        if (throughput != Rgb(0) && passes_crowd(surface)) {
             Segment beyond = static_cast<const Segment&>(surface);
             ++beyond.depth;
             beyond.source = surface.source == RaySource::held_out ? RaySource::camera : surface.source;
-            beyond.throughput = throughput;
+            beyond.throughput = throughput / share_in_crowd(surface);
             beyond.absorption = surface.absorption_beyond;
             start(beyond, behind(surface.whole, surface.hit));
         }

@@ -317,6 +317,10 @@ class CameraSurfaces {
     /// The paths that go on from a surface by its lobes.
     void reflect(const Surface& surface, const Sink& sink);
     void reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
+    /// The share of scattered paths that go on from a surface, which is less than 1 once those of a ray have met many.
+    float share_in_crowd(const Surface& surface) const;
+    /// Whether a path that it lets pass is one of them.
+    bool passes_crowd(const Surface& surface) const;
     /// Paths by the lobe with this number, and those of the same distribution.
     void scatter(const Surface& surface, std::size_t first);
     void scatter(const Surface& surface, std::size_t first, std::uint32_t seed, const Division& division);

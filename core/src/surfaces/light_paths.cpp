@@ -39,9 +39,6 @@ double mirrored_share(const LobeShape& shape, double cosine) {
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
 constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
-/// Surfaces that a ray's paths have met from which on fewer paths go on: where each surface has several, and lets rays
-/// pass too, they would be without number.
-constexpr float kCrowd = 16;
 /// The least share of light for which two paths share a broad lobe.
 constexpr double kShared = 0.04;
 /// The density ÷ the filter of a direction in which Cycles would widen lobes to about half as much as by a filter of 0.
@@ -259,9 +256,8 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uin
     const Terminator lifted = terminator(surface, own, point);
     weight *= surface.throughput * static_cast<float>(lifted.let_in(way.z) / density / division.paths);
     const auto share = static_cast<float>(average(weight));
-    const float crowd = std::max(static_cast<float>(met_by_ray_[surface.ray]) / kCrowd, 1.0F);
     const float surely = division.is_broad ? kSurelyFollowedToCells : kSurelyFollowed;
-    const float probability = std::min(share / surely, 1.0F) / (crowd * crowd);
+    const float probability = std::min(share / surely, 1.0F) * share_in_crowd(surface);
     if (sobol_beyond(number, seed).x >= double{probability}) {
         return;
     }
