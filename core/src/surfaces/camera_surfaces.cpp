@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "lobes/refraction.h"
-#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
@@ -255,20 +254,6 @@ void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
     const Rgb emission = by_program ? color(surface, *material.shader->emission)
                                     : scene_->placed().emission(material, surface.hit, surface.towards_viewer);
     add_light(surface, LightKind::emission, material.group, surface.throughput * emission, sink);
-}
-
-/// Paths of a ray multiply where surfaces scatter them and let them pass too.
-float CameraSurfaces::share_in_crowd(const Surface& surface) const {
-    constexpr float kCrowd = 16;
-    const float crowd = static_cast<float>(met_by_ray_[surface.ray]) / kCrowd;
-    return surface.source == RaySource::scattered && crowd > 1 ? 1 / (crowd * crowd) : 1.0F;
-}
-
-bool CameraSurfaces::passes_crowd(const Surface& surface) const {
-    constexpr std::uint32_t kPassSeed = 0xC0000000U;
-    const CameraRay& ray = rays_[surface.ray];
-    const std::uint32_t place = hash(hash(surface.bounces, surface.hit.triangle), kPassSeed + surface.depth);
-    return sobol_beyond(ray.sample, hash(ray.seed, place)).x < double{share_in_crowd(surface)};
 }
 
 /// Emission of the surfaces met last, and the paths that go on from there.

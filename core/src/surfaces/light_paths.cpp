@@ -39,6 +39,8 @@ double mirrored_share(const LobeShape& shape, double cosine) {
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
 constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
+/// Surfaces that a ray's paths have met from which on fewer of them go on.
+constexpr float kCrowd = 16;
 /// The least share of light for which two paths share a broad lobe.
 constexpr double kShared = 0.04;
 /// The density ÷ the filter of a direction in which Cycles would widen lobes to about half as much as by a filter of 0.
@@ -54,6 +56,8 @@ constexpr std::size_t kMostLamps = 4;
 /// Seeds of directions through interfaces, beside those of lobes, and of those to lamps.
 constexpr std::uint32_t kRefractionSeed = 0x80000000U;
 constexpr std::uint32_t kLampSeed = 0x40000000U;
+/// Seed of paths that surfaces let pass.
+constexpr std::uint32_t kPassSeed = 0xC0000000U;
 
 }  // namespace
 
@@ -211,6 +215,22 @@ void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& l
     add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
     start(segment, ray);
     ++mirror_count_;
+}
+
+/// Paths of a ray multiply where surfaces scatter them and let them pass too.
+float CameraSurfaces::share_in_crowd(const Surface& surface) const {
+    const float crowd = static_cast<float>(met_by_ray_[surface.ray]) / kCrowd;
+    return surface.source == RaySource::scattered && crowd > 1 ? 1 / (crowd * crowd) : 1.0F;
+}
+
+bool CameraSurfaces::passes_crowd(const Surface& surface) const {
+    const float share = share_in_crowd(surface);
+    if (share == 1) {
+        return true;
+    }
+    const CameraRay& ray = rays_[surface.ray];
+    const std::uint32_t place = hash(hash(surface.bounces, surface.hit.triangle), kPassSeed + surface.depth);
+    return sobol_beyond(ray.sample, hash(ray.seed, place)).x < double{share};
 }
 
 /// A path is cheap where the light at its end is known: a broad lobe has two.
