@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from shlight import nodes
-from shlight_blender.export import meshes
+from shlight_blender.export import Changes, ExportedScene, everything, meshes, whole_frame
 from shlight_blender.export.emission import VaryingEmission
 from shlight_blender.export.materials import read_material
 from shlight_blender.export.nodes import Surroundings
@@ -232,7 +233,7 @@ def test_strength_from_a_picture_and_principled(studio: Any) -> None:
 
 def test_what_is_not_supported_is_named(studio: Any) -> None:
     made = screen(studio, studio.picture(checker()), OFF_CENTRE, interpolation="Closest")
-    studio.area()
+    studio.lit_floor()
     studio.camera()
     (line,) = studio.messages()
     assert "Object 'Screen'" in line
@@ -246,6 +247,28 @@ def test_what_is_not_supported_is_named(studio: Any) -> None:
         tree.nodes.new("ShaderNodeAmbientOcclusion").outputs["Color"], tree.nodes["Emission"].inputs["Color"]
     )
     assert any("node 'Ambient Occlusion'" in line for line in studio.messages())
+
+
+def test_what_lights_nothing_is_not_cut(studio: Any) -> None:
+    """Where all that is drawn shines or is clear, until something is lit."""
+    made = screen(studio, studio.picture(checker()), OFF_CENTRE, interpolation="Closest")
+    clear = studio.plane(1.0, studio.material("ShaderNodeBsdfTransparent"), location=(0, 0, 2))
+    studio.camera(location=(0.3, 0.3, 3.5), target=made.location)
+    studio.resolution(32, 32)
+    studio.compare(mean=3e-3, error=2e-3)
+    exported, changes = ExportedScene(), everything()
+    lines = {}
+    for material in (clear.data.materials[0], studio.material(name="Grey"), clear.data.materials[0]):
+        clear.material_slots[0].material = material
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        exported.look_from(depsgraph, frame=whole_frame(32, 32))
+        exported.update(depsgraph, changes)
+        lines[len(lines)] = [message.line() for message in exported.report]
+        changes = Changes(objects=True)
+    assert lines[0] == lines[2] == []
+    (line,) = lines[1]
+    assert "pieces of even light" in line
 
 
 def test_the_camera_sees_the_picture(studio: Any) -> None:

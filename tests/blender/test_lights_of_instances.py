@@ -186,3 +186,28 @@ def test_portals_give_no_light(studio: Any) -> None:
     image, _ = studio.compare(mean=3e-3, error=3e-3)
     assert studio.messages() == []
     np.testing.assert_array_equal(image[..., :3].max() > 0, True)
+
+
+@pytest.mark.parametrize("node", ["ShaderNodeTexCoord/Generated", "ShaderNodeTexCoord/UV", "ShaderNodeUVMap/UV"])
+def test_what_shines_by_its_place_on_the_instancer(studio: Any, node: str) -> None:
+    """Each card has one colour, of the face on which it stands; what nothing instances has none."""
+    stage(studio)
+    corners = [*CORNERS, (-0.4, -1.0, 1.7)]
+    host = studio.mesh("Host", corners, [(0, 1, 2), (1, 0, 3)], instance_type="FACES", show_instancer_for_render=False)
+    places = [(0.9, 0.2), (0.6, 0.8), (0.1, 0.4), (0.3, 0.9), (0.2, 0.7), (0.8, 0.5)]
+    host.data.uv_layers.new().data.foreach_set("uv", np.ravel(places))
+    name, output = node.split("/")
+    glow = studio.material("ShaderNodeEmission", name="Glow", Strength=9.0)
+    tree = glow.node_tree
+    own, up = tree.nodes.new(name), tree.nodes.new("ShaderNodeVectorMath")
+    own.from_instancer, up.inputs[1].default_value = True, (1.1, 1.1, 1.1)
+    tree.links.new(own.outputs[output], up.inputs[0])
+    tree.links.new(up.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    card = studio.box((0.3, 0.4, 0.02), glow)
+    alone = card.copy()
+    alone.location = (1.0, 1.0, 0.4)
+    studio.scene.collection.objects.link(alone)
+    card.parent = host
+    studio.scene.shlight.pixel_samples = 64
+    studio.compare(mean=3e-3, error=1e-2)  # the edges of bright cards
+    assert studio.messages() == []

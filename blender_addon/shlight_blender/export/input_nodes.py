@@ -31,7 +31,7 @@ from .mesh_attributes import (
     TANGENT,
 )
 from .nodes import Expression, NodeInputs, ReadNode
-from .object_values import RANDOM, property_color
+from .object_values import FROM_INSTANCER, RANDOM, property_color
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ COORDINATES: dict[str, Callable[[], Vector]] = {
 def _texture_coordinate(inputs: NodeInputs) -> Expression:
     name, view = inputs.output.identifier, inputs.reader.surroundings.view
     if inputs.node.from_instancer and name in ("Generated", "UV"):
-        inputs.remark("'From Instancer' is not supported; the object's own coordinates are used")
+        return Vector(*_of_object(inputs, FROM_INSTANCER, name))
     if name in COORDINATES:
         return COORDINATES[name]()
     if name == "Object":
@@ -150,7 +150,7 @@ def _tangent(inputs: NodeInputs) -> Vector:
 
 def _uv_map(inputs: NodeInputs) -> Vector:
     if inputs.node.from_instancer:
-        inputs.remark("'From Instancer' is not supported; the object's own map is used")
+        return Vector(*_of_object(inputs, FROM_INSTANCER, "UV"))
     return nodes.uv(name_of(inputs.node, "uv_map"))
 
 

@@ -93,6 +93,14 @@ class Surface:
         """True if it may give light."""
         return bool(self.emission.any()) or self.varying is not None
 
+    def is_lit(self) -> bool:
+        """True if light that falls on it may be seen, on it or through it."""
+        return isinstance(self.shader, Bsdf) or bool(self.shader.lobes or self.shader.refractions)
+
+    def lighting_nothing(self) -> Surface:
+        """The same surface to who sees it, which lights no other."""
+        return replace(self, emission=np.zeros(3), varying=None)
+
 
 def default_surface() -> Surface:
     """The surface of an object without material."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -127,6 +127,7 @@ class SceneMeshes:
         self._kept: dict[tuple[Any, ...], KeptMesh] = {}
         self._surfaces: dict[Any, tuple[Surface, ExportReport]] = {}  # by materials
         self._override: Any = None
+        self._is_anything_lit = True
         self.report = ExportReport()
 
     def begin(self, changes: Changes, surroundings: Surroundings, material_override: Any = None) -> None:
@@ -140,6 +141,15 @@ class SceneMeshes:
         self.report = ExportReport()
         if changes.materials:
             self._surfaces.clear()
+
+    def find_lit(self, shown: Iterable[Any]) -> None:
+        """Looks for a surface that is lit, after `begin`, among the objects that are to be drawn: where there is none,
+        what shines is seen and lights nothing, so that its light is neither cut into pieces nor sorted."""
+        materials = (material for own in shown for material in slot_materials(own) or [None])
+        is_anything_lit = any(self._surface(material).is_lit() for material in materials)
+        if is_anything_lit != self._is_anything_lit:
+            self._is_anything_lit = is_anything_lit
+            self._changes = replace(self._changes, materials=True)
 
     def add(self, instance: Any, to_world: Matrix, kind: str = "") -> None:
         """Notes one instance of the depsgraph that shows a mesh, or a kind of strands, at `to_world`."""
@@ -159,6 +169,8 @@ class SceneMeshes:
             self.report.add(_place_of(mesh_object), "it has no extent in a direction; left out", Effect.THING)
             return
         surfaces = [self._surface(material) for material in materials or [None]]
+        if not self._is_anything_lit:
+            surfaces = [surface.lighting_nothing() for surface in surfaces]
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         elif any(shines_by_place(surface) for surface in surfaces):
@@ -365,7 +377,7 @@ class SceneMeshes:
             if kept.mesh is not None and self._seen.get(key) is not kept:
                 kept.mesh.remove()
         self._kept = self._seen
-        emits = False
+        emits = not self._is_anything_lit and any(own.emits() for own, _ in self._surfaces.values())
         for use in self._seen.values():
             ask()
             self.report.extend(use.report)

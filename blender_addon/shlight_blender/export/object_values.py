@@ -45,6 +45,7 @@ def share(bits: Any) -> Any:
 
 
 RANDOM = "random"
+FROM_INSTANCER = "from instancer"  # the place on what instances it: "Generated" or "UV"
 COUNT = 4  # numbers of a property: RGBA
 
 
@@ -55,7 +56,7 @@ class ObjectValues:
         self._asked: list[tuple[str, str]] = []
 
     def first(self, kind: str, name: str) -> int:
-        """The number of the first value of a property; kind: as an Attribute node's, or RANDOM."""
+        """The number of the first value of a property; kind: as an Attribute node's, RANDOM or FROM_INSTANCER."""
         key = (kind, name)
         if key not in self._asked:
             self._asked.append(key)
@@ -70,10 +71,22 @@ def _values(instance: Any, kind: str, name: str) -> tuple[float, ...]:
     if kind == RANDOM:
         own = hashed(hashed_text(name_bytes(instance.object)), 0)
         return (share(instance.random_id & ALL_BITS if instance.is_instance else own), 0.0, 0.0, 0.0)
+    if kind == FROM_INSTANCER:
+        return _on_instancer(instance, name)
     owners = [instance.object, instance.object.data]
     if kind == "INSTANCER" and instance.is_instance:
         owners.insert(0, instance.parent)
     return property_color(owners, name)
+
+
+def _on_instancer(instance: Any, name: str) -> tuple[float, ...]:
+    """Where on its instancer an instance stands; Blender has generated coordinates from -1 to 1, of which Cycles takes
+    1 away before it halves them. What nothing instances has 0."""
+    if not instance.is_instance:
+        return (0.0, 0.0, 0.0, 0.0)
+    if name == "UV":
+        return (*instance.uv, 0.0, 0.0)
+    return (*(0.5 * own - 0.5 for own in instance.orco), 0.0)
 
 
 def property_color(owners: list[Any], name: str) -> tuple[float, float, float, float]:

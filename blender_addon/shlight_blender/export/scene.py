@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import bpy
@@ -88,7 +88,7 @@ class _State(NamedTuple):
 class ExportedScene:
     """A shlight.Scene that follows a scene of Blender: `look_from` a camera first, then `update`.
 
-    scene: ready for `shlight.render` after both.
+    scene: ready for `shlight.render` after both; what shines lights nothing where no surface is lit.
     meshes: its meshes, with their names and what their materials take.
     dark: what the report says if nothing gives light, else "".
     """
@@ -215,6 +215,7 @@ class ExportedScene:
             self.meshes.begin(changes, self._surroundings, depsgraph.view_layer_eval.material_override)
             self._new_report("objects")
             self._told = set()
+            self.meshes.find_lit(_drawn(depsgraph, viewport))
         for instance in depsgraph.object_instances:
             ask()
             is_seen = _is_seen(instance, viewport)
@@ -346,6 +347,15 @@ def _is_seen(instance: Any, viewport: Any, switch: str = "show_self") -> bool:
         return instance.is_instance or not instance.object.hide_render
     shown = instance.parent if instance.is_instance else instance.object
     return bool(shown.visible_in_viewport_get(viewport))
+
+
+def _drawn(depsgraph: Any, viewport: Any) -> Iterator[Any]:
+    """The objects that may be drawn, for each of their instances."""
+    for instance in depsgraph.object_instances:
+        if instance.object.type in DRAWN_TYPES and (
+            _is_seen(instance, viewport) or _is_hairy(instance, viewport, depsgraph)
+        ):
+            yield instance.object
 
 
 def _instancer(instance: Any) -> Any:

@@ -221,7 +221,7 @@ def share_colors(radiance: Array, area: Array, most: int = MOST_COLORS) -> Color
 def _nearest(values: Array, weights: Array, labels: IntArray, rounds: int = 4) -> IntArray:
     for _ in range(rounds):
         colors = _means(values, weights, labels)
-        nearest = ((values[:, None] - colors[None]) ** 2).sum(axis=2).argmin(axis=1)
+        nearest = ((colors**2).sum(axis=1) - 2.0 * values @ colors.T).argmin(axis=1)
         labels = np.unique(nearest, return_inverse=True)[1].reshape(-1).astype(np.int64)
     return labels
 

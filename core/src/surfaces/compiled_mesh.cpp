@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <ranges>
 #include <utility>
 
 #include "base/ray_rounding.h"
@@ -65,6 +66,12 @@ std::vector<bool> transparent_materials(const SceneMesh& mesh) {
     }
     // None, if no material does: the number of materials may change.
     return std::ranges::find(transparent, true) == transparent.end() ? std::vector<bool>() : transparent;
+}
+
+/// Whether a material of the mesh gives light.
+bool shines(const SceneMesh& mesh) {
+    const auto emits = [&](std::size_t material) { return mesh.emitted(material) != Emission(); };
+    return std::ranges::any_of(std::views::iota(std::size_t{0}, mesh.material_count()), emits);
 }
 
 /// The curves or spheres for which wanted(part).
@@ -154,8 +161,11 @@ std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const Sce
         compiled->opaque = tree_of(*compiled, transparent, false, stopped);
         compiled->transparent = tree_of(*compiled, transparent, true, stopped);
     }
-    visit_emissive_faces(*compiled, 0,
-                         [&](const EmissiveFaces& faces) { add_lights(faces, stopped, compiled->lights); });
+    compiled->is_crowd = mesh->transforms.size() > kMostMeshLights && shines(*mesh);
+    if (!compiled->is_crowd) {
+        visit_emissive_faces(*compiled, 0,
+                             [&](const EmissiveFaces& faces) { add_lights(faces, stopped, compiled->lights); });
+    }
     return compiled;
 }
 

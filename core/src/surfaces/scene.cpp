@@ -33,9 +33,6 @@ struct LampBounds {
     }
 };
 
-/// Lights of meshes in a scene, at most, that are looked at one by one.
-constexpr std::size_t kMostMeshLights = 128;
-
 /// A scene keeps the world's frame, or the one before, if it is no more of its own sizes away from its origin.
 constexpr double kSizesAway = 8;
 
@@ -111,13 +108,14 @@ void CompiledScene::build(std::span<const std::shared_ptr<const SceneMesh>> mesh
 }
 
 void CompiledScene::join_mesh_lights(std::size_t lamps, const CompiledScene* before, const Stopped& stopped) {
-    if (lights_.size() - lamps <= kMostMeshLights) {
+    const auto is_crowd = [](const std::shared_ptr<const CompiledMesh>& mesh) { return mesh->is_crowd; };
+    if (lights_.size() - lamps <= kMostMeshLights && std::ranges::none_of(placed_->meshes(), is_crowd)) {
         return;
     }
     std::vector<PlacedEmitter> emitters;
     std::uint32_t first_instance = 0;
     for (const std::shared_ptr<const CompiledMesh>& mesh : placed_->meshes()) {
-        if (!mesh->lights.empty()) {
+        if (mesh->is_crowd || !mesh->lights.empty()) {
             emitters.push_back({mesh, first_instance});
         }
         first_instance += static_cast<std::uint32_t>(mesh->mesh->transforms.size());
