@@ -78,10 +78,9 @@ attributes: likewise, of one to four numbers; shlight.nodes.attribute() reads th
 material_indices: (c,) integers, the material of each curve; None: 0 for all.
 emission: as of Scene.add_mesh. Curves are seen to shine; they light nothing but by bounces.
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
-    material_pass_indices, terminator_shading_offset, visible_to, holdout, light_set, shadow_set: as of Scene.add_mesh. Radii are scaled by the cube root of a
-    transform's determinant.
+    material_pass_indices, terminator_shading_offset, visible_to, holdout, light_set, shadow_set: as of Scene.add_mesh.
 
-Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
+A transform scales curves as it scales a mesh: where it is uneven, tubes are no longer round. Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
 
 constexpr const char* kAddPointCloudDoc = R"(Add a cloud of spheres.
@@ -93,6 +92,7 @@ emission: as of Scene.add_mesh. Spheres are seen to shine; they light nothing bu
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
     material_pass_indices, terminator_shading_offset, visible_to, holdout, light_set, shadow_set: as of Scene.add_mesh.
 
+A transform scales spheres as it scales a mesh; the normals of uneven ones point away from their centres, as in Cycles.
 Spheres are met from outside alone. Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
 

@@ -250,7 +250,7 @@ def test_what_is_not_supported_is_named(studio: Any) -> None:
 
 
 def test_what_lights_nothing_is_not_cut(studio: Any) -> None:
-    """Where all that is drawn shines or is clear, until something is lit."""
+    """The screen is cut once the clear plane before it is gray, and whole again once it is clear."""
     made = screen(studio, studio.picture(checker()), OFF_CENTRE, interpolation="Closest")
     clear = studio.plane(1.0, studio.material("ShaderNodeBsdfTransparent"), location=(0, 0, 2))
     studio.camera(location=(0.3, 0.3, 3.5), target=made.location)

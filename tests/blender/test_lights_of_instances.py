@@ -190,10 +190,10 @@ def test_portals_give_no_light(studio: Any) -> None:
 
 @pytest.mark.parametrize("node", ["ShaderNodeTexCoord/Generated", "ShaderNodeTexCoord/UV", "ShaderNodeUVMap/UV"])
 def test_what_shines_by_its_place_on_the_instancer(studio: Any, node: str) -> None:
-    """Each card has one colour, of the face on which it stands; what nothing instances has none."""
+    """Each card has one colour, of the place where a particle has it; what nothing instances has none."""
     stage(studio)
     corners = [*CORNERS, (-0.4, -1.0, 1.7)]
-    host = studio.mesh("Host", corners, [(0, 1, 2), (1, 0, 3)], instance_type="FACES", show_instancer_for_render=False)
+    host = studio.mesh("Host", corners, [(0, 1, 2), (1, 0, 3)], show_instancer_for_render=False)
     places = [(0.9, 0.2), (0.6, 0.8), (0.1, 0.4), (0.3, 0.9), (0.2, 0.7), (0.8, 0.5)]
     host.data.uv_layers.new().data.foreach_set("uv", np.ravel(places))
     name, output = node.split("/")
@@ -207,7 +207,9 @@ def test_what_shines_by_its_place_on_the_instancer(studio: Any, node: str) -> No
     alone = card.copy()
     alone.location = (1.0, 1.0, 0.4)
     studio.scene.collection.objects.link(alone)
-    card.parent = host
+    particles = host.modifiers.new("Particles", "PARTICLE_SYSTEM").particle_system.settings
+    particles.type, particles.render_type, particles.count = "HAIR", "OBJECT", 6
+    particles.instance_object, particles.particle_size, particles.hair_length = card, 1.0, 1.0
     studio.scene.shlight.pixel_samples = 64
     studio.compare(mean=3e-3, error=1e-2)  # the edges of bright cards
     assert studio.messages() == []

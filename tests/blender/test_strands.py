@@ -86,7 +86,7 @@ def test_hair_of_particles(studio: Any, shape: str) -> None:
 def test_hair_curves(studio: Any, shape: str) -> None:
     studio.lit_floor()
     gray = studio.material("ShaderNodeBsdfPrincipled", Base_Color=(0.7, 0.4, 0.2), Roughness=0.4)
-    strand_curves(studio, [2, 3, 7, 4, 12, 5] * 20, gray, scale=(0.9, 0.9, 1.2), rotation_euler=(0.1, 0, 0.4))
+    strand_curves(studio, [2, 3, 7, 4, 12, 5] * 20, gray, scale=(0.5, 1.6, 1.2), rotation_euler=(0.1, 0, 0.4))
     studio.scene.cycles_curves.shape = shape
     studio.resolution(40, 30)
     studio.compare()
@@ -96,7 +96,7 @@ def test_hair_curves(studio: Any, shape: str) -> None:
 def test_point_clouds(studio: Any) -> None:
     studio.lit_floor()
     gray = studio.material("ShaderNodeBsdfPrincipled", Base_Color=(0.7, 0.4, 0.2), Roughness=0.4)
-    first = cloud(studio, gray, rotation_euler=(0, 0, 0.4))
+    first = cloud(studio, gray, rotation_euler=(0, 0, 0.4), scale=(0.6, 1.4, 1.0))
     studio.link("Other", first.data, (1.5, 1.5, 0), scale=(0.7, 0.7, 0.7)).modifiers.new(
         "Nodes", "NODES"
     ).node_group = first.modifiers[0].node_group

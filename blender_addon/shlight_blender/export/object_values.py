@@ -80,8 +80,10 @@ def _values(instance: Any, kind: str, name: str) -> tuple[float, ...]:
 
 
 def _on_instancer(instance: Any, name: str) -> tuple[float, ...]:
-    """Where on its instancer an instance stands; Blender has generated coordinates from -1 to 1, of which Cycles takes
-    1 away before it halves them. What nothing instances has 0."""
+    """Where an instance stands on its instancer; it is 0 for what nothing instances.
+
+    Cycles takes 1 away from Blender's generated coordinates before it halves them.
+    """
     if not instance.is_instance:
         return (0.0, 0.0, 0.0, 0.0)
     if name == "UV":

@@ -21,9 +21,23 @@ constexpr std::size_t kMostMovedTriangles = 1 << 15;
 /// has up to 3.
 constexpr double kLargestCondition = 4;
 
+/// Deviation of a square of a scale from that of others, as a share, below which they are alike.
+constexpr double kEvenScale = 1e-5;
+
+bool scales_evenly(const glm::dmat3& linear) {
+    const glm::dmat3 squares = glm::transpose(linear) * linear;
+    const double mean = (squares[0][0] + squares[1][1] + squares[2][2]) / 3;
+    return inf_norm(squares - mean * glm::dmat3(1)) <= kEvenScale * mean;
+}
+
 /// A mesh placed once has its vertices moved to the world, where rays are rounded least, unless it is so large that it
-/// had better keep its tree when it moves.
+/// had better keep its tree when it moves. Curves and spheres that are scaled unevenly have no radius there: they are
+/// round, or turn to the ray, in their own frame, as in Cycles.
 bool is_baked(const SceneMesh& mesh) {
+    const bool is_round = mesh.shape->form != SurfaceForm::triangles;
+    if (is_round && !mesh.transforms.empty() && !scales_evenly(glm::dmat3(mesh.transforms.front()))) {
+        return false;
+    }
     if (mesh.transforms.size() != 1 || mesh.shape->triangles.size() <= kMostMovedTriangles) {
         return mesh.transforms.size() == 1;
     }

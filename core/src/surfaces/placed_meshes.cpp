@@ -190,8 +190,10 @@ SurfacePoint PlacedMeshes::round_surface(const RayHit& hit, const Vec3f& directi
     const Vec3d outwards = transform_vector(to_world, middle.radius * own.normal);
     const Vec3d lift = transform_vector(to_world, middle.radius * own.lift);
     const Vec3d position = transform_point(to_world, middle.position) + outwards - lift;
-    const Vec3d normal =
-        normalized_or(glm::transpose(glm::dmat3(to_object)) * own.normal, -glm::normalize(Vec3d(direction)));
+    // The normal of a sphere that is scaled unevenly points away from its centre, as in Cycles.
+    const bool is_sphere = shape.form == SurfaceForm::spheres;
+    const Vec3d across = is_sphere ? outwards : glm::transpose(glm::dmat3(to_object)) * own.normal;
+    const Vec3d normal = normalized_or(across, -glm::normalize(Vec3d(direction)));
     const double scale = placement.condition * (largest_component(position) + placement.origin);
     const double radius = glm::length(outwards);
     const std::uint32_t material = placement.first_material + shape.material_index(shape.part(hit.triangle));
