@@ -80,10 +80,7 @@ def _values(instance: Any, kind: str, name: str) -> tuple[float, ...]:
 
 
 def _on_instancer(instance: Any, name: str) -> tuple[float, ...]:
-    """Where an instance stands on its instancer; it is 0 for what nothing instances.
-
-    Cycles takes 1 away from Blender's generated coordinates before it halves them.
-    """
+    """The coordinates of an instance on the surface of its instancer, as Cycles has them; 0 without an instancer."""
     if not instance.is_instance:
         return (0.0, 0.0, 0.0, 0.0)
     if name == "UV":
