@@ -131,13 +131,15 @@ def floor_of_quads(studio: Any, material: Any) -> None:
 SINCE_51 = pytest.mark.skipif(bpy.app.version < (5, 1, 0), reason="normal maps have one convention")
 
 
-@pytest.mark.parametrize("form", ["cap", pytest.param("cap with green down", marks=SINCE_51), "ball", "quads"])
+@pytest.mark.parametrize("form", ["cap", pytest.param("cap with green down", marks=SINCE_51), "ball", "plane", "quads"])
 def test_normal_maps_of_other_faces_than_triangles_and_without_a_uv_map(studio: Any, form: str) -> None:
     """Blender gives no tangents of them, or of faces as a whole, and Cycles has its own. The normals between the cap's
     corners differ much in length.
     """
     if form == "quads":
         floor_of_quads(studio, normal_mapped(studio))
+    elif form == "plane":  # all its directions from its origin are of one latitude
+        studio.plane(3.0, normal_mapped(studio))
     elif form != "ball":
         material = normal_mapped(studio)
         if form == "cap with green down":

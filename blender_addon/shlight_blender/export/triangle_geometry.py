@@ -39,8 +39,9 @@ def triangle_tangents(
 
     normals: of corners (k, 3, 3) or vertices (n, 3); None if the triangles are flat. uvs: (k, 3, 2). Corners that agree
     in place, normal, UV and sign share the mean of what their triangles say, weighed by the angle at the corner, in the
-    plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). u_turns: u counts turns, and a
-    triangle's edges take the shorter way round from its first corner.
+    plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). Where none says anything, it is the
+    x axis, as in Blender. u_turns: u counts turns, and a triangle's edges take the shorter way round from its first
+    corner.
     """
     if normals is None:
         normals = np.repeat(face_normals(vertices, triangles)[:, None], 3, axis=1)
@@ -63,7 +64,7 @@ def triangle_tangents(
     told_by = np.concatenate([np.concatenate([p, n, uv], axis=-1).reshape(-1, 8), signs[:, None]], axis=1)
     group = _equal_rows(told_by)
     mean = np.stack([np.bincount(group, each) for each in weighed.reshape(-1, 3).T], axis=1).astype(np.float64)
-    found = np.concatenate([unit(mean, 0.0)[group], signs[:, None]], axis=1)
+    found = np.concatenate([unit(mean, (1.0, 0.0, 0.0))[group], signs[:, None]], axis=1)
     return found.reshape(-1, 3, 4).astype(np.float32)
 
 
