@@ -80,3 +80,9 @@ def test_what_shines_and_casts_no_shadow_is_named(studio: Any) -> None:
     assert studio.messages(most=99) == [
         "Object 'diffuse': it shines and is hidden from shadow rays; its far sides light what is before it"
     ]
+
+
+def test_glass_that_throws_no_shadow_is_named(studio: Any) -> None:
+    studio.lit_floor()
+    studio.box((1, 1, 1), studio.material("ShaderNodeBsdfGlass"), visible_shadow=False)
+    assert any("Object 'Box': it refracts and is hidden from shadow rays" in line for line in studio.messages())

@@ -39,6 +39,6 @@ def test_edges_are_those_of_cycles(studio: Any, size: float, in_pixels: bool, ki
 
 def test_edges_that_shine_are_named(studio: Any) -> None:
     material = wired(studio, size=0.2, in_pixels=False, shader="ShaderNodeEmission", socket="Strength")
-    studio.plane(size=2, material=material)
-    studio.camera()
+    studio.lit_floor()
+    studio.plane(size=2, material=material, location=(0, 0, 1))
     assert any("Wireframe in its emission is drawn coarsely" in line for line in studio.messages(most=99))

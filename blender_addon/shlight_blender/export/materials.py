@@ -93,9 +93,13 @@ class Surface:
         """True if it may give light."""
         return bool(self.emission.any()) or self.varying is not None
 
+    def refracts(self) -> bool:
+        """True if it bounds a transparent body."""
+        return not isinstance(self.shader, Bsdf) and bool(self.shader.refractions)
+
     def is_lit(self) -> bool:
         """True if light that falls on it may be seen, on it or through it."""
-        return isinstance(self.shader, Bsdf) or bool(self.shader.lobes or self.shader.refractions)
+        return isinstance(self.shader, Bsdf) or bool(self.shader.lobes) or self.refracts()
 
     def lighting_nothing(self) -> Surface:
         """The same surface to who sees it, which lights no other."""

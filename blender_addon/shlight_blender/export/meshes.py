@@ -289,6 +289,9 @@ class SceneMeshes:
             if made.emits() and "shadow" not in visibility.visible_to:
                 text = "it shines and is hidden from shadow rays; its far sides light what is before it"
                 report.add(place, text, Effect.LIGHT)
+            if "shadow" not in visibility.visible_to and any(own.refracts() for own in surfaces):
+                text = "it refracts and is hidden from shadow rays; Cycles counts a part of the light through it twice"
+                report.add(place, text, Effect.LIGHT)
             links = visibility.links
             if made.emits() and links.shadow_set not in (links.blockers or (links.shadow_set,)) and len(slots) > 2:
                 report.add(place, "shadow linking lets its light through itself; here it does not", Effect.LIGHT)

@@ -39,9 +39,9 @@ def triangle_tangents(
 
     normals: of corners (k, 3, 3) or vertices (n, 3); None if the triangles are flat. uvs: (k, 3, 2). Corners that agree
     in place, normal, UV and sign share the mean of what their triangles say, weighed by the angle at the corner, in the
-    plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). Where none says anything, it is the
-    x axis, as in Blender. u_turns: u counts turns, and a triangle's edges take the shorter way round from its first
-    corner.
+    plane of the normal (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008). Where none says anything, it is
+    the x axis, as in Blender. u_turns: u counts turns, and a triangle's edges take the shorter way round from its
+    first corner.
     """
     if normals is None:
         normals = np.repeat(face_normals(vertices, triangles)[:, None], 3, axis=1)

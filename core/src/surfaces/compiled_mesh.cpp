@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ranges>
 #include <utility>
 
 #include "base/ray_rounding.h"
@@ -84,8 +83,12 @@ std::vector<bool> transparent_materials(const SceneMesh& mesh) {
 
 /// Whether a material of the mesh gives light.
 bool shines(const SceneMesh& mesh) {
-    const auto emits = [&](std::size_t material) { return mesh.emitted(material) != Emission(); };
-    return std::ranges::any_of(std::views::iota(std::size_t{0}, mesh.material_count()), emits);
+    for (std::size_t i = 0; i < mesh.material_count(); ++i) {
+        if (mesh.emitted(i) != Emission()) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// The curves or spheres for which wanted(part).
