@@ -137,7 +137,8 @@ class SceneMeshes:
         self._override = material_override
         self._seen: dict[tuple[Any, ...], KeptMesh] = {}
         self._shining_places: Counter[tuple[Any, ...]] = Counter()
-        self._told: set[Any] = set()  # the materials whose report this one has
+        self._told: set[int] = set()  # the reports of materials that this one has, by id
+        self._shines_alone = False  # something shines where nothing is lit
         self.report = ExportReport()
         if changes.materials:
             self._surfaces.clear()
@@ -146,7 +147,7 @@ class SceneMeshes:
         """Looks for a surface that is lit, after `begin`, among the objects that are to be drawn: where there is none,
         what shines is seen and lights nothing, so that its light is neither cut into pieces nor sorted."""
         materials = (material for own in shown for material in slot_materials(own) or [None])
-        is_anything_lit = any(self._surface(material).is_lit() for material in materials)
+        is_anything_lit = any(self._read(material)[0].is_lit() for material in materials)
         if is_anything_lit != self._is_anything_lit:
             self._is_anything_lit = is_anything_lit
             self._changes = replace(self._changes, materials=True)
@@ -170,6 +171,7 @@ class SceneMeshes:
             return
         surfaces = [self._surface(material) for material in materials or [None]]
         if not self._is_anything_lit:
+            self._shines_alone |= any(surface.emits() for surface in surfaces)
             surfaces = [surface.lighting_nothing() for surface in surfaces]
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
@@ -348,15 +350,18 @@ class SceneMeshes:
         )
         return made
 
-    def _surface(self, material: Any) -> Surface:
+    def _read(self, material: Any) -> tuple[Surface, ExportReport]:
         material = self._override or material
         key = material and material.as_pointer()
         if key not in self._surfaces:
             report = ExportReport()
             self._surfaces[key] = read_material(material, report, self._surroundings), report
-        surface, report = self._surfaces[key]
-        if key not in self._told:
-            self._told.add(key)
+        return self._surfaces[key]
+
+    def _surface(self, material: Any) -> Surface:
+        surface, report = self._read(material)
+        if id(report) not in self._told:
+            self._told.add(id(report))
             self.report.extend(report)
         return surface
 
@@ -380,7 +385,7 @@ class SceneMeshes:
             if kept.mesh is not None and self._seen.get(key) is not kept:
                 kept.mesh.remove()
         self._kept = self._seen
-        emits = not self._is_anything_lit and any(own.emits() for own, _ in self._surfaces.values())
+        emits = self._shines_alone
         for use in self._seen.values():
             ask()
             self.report.extend(use.report)

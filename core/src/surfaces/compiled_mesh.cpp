@@ -81,10 +81,10 @@ std::vector<bool> transparent_materials(const SceneMesh& mesh) {
     return std::ranges::find(transparent, true) == transparent.end() ? std::vector<bool>() : transparent;
 }
 
-/// Whether a material of the mesh gives light.
+/// Whether a triangle of the mesh gives light.
 bool shines(const SceneMesh& mesh) {
-    for (std::size_t i = 0; i < mesh.material_count(); ++i) {
-        if (mesh.emitted(i) != Emission()) {
+    for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
+        if (mesh.emitted(mesh.shape->material_index(i)) != Emission()) {
             return true;
         }
     }
