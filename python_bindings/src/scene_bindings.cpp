@@ -80,7 +80,8 @@ emission: as of Scene.add_mesh. Curves are seen to shine; they light nothing but
 bsdf, transforms, object_values, group, object_names, asset_names, object_indices, material_names,
     material_pass_indices, terminator_shading_offset, visible_to, holdout, light_set, shadow_set: as of Scene.add_mesh.
 
-A transform scales curves as it scales a mesh: where it is uneven, tubes are no longer round. Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
+A transform scales curves as it scales a mesh: where it is uneven, tubes are no longer round.
+Tubes are met from outside alone. Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
 
 constexpr const char* kAddPointCloudDoc = R"(Add a cloud of spheres.

@@ -288,10 +288,11 @@ class SceneMeshes:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             geometry_offset, shading_offset = terminator_offsets(shown)
             made.faces = np.bincount(slots, minlength=len(surfaces))
-            if made.emits() and "shadow" not in visibility.visible_to:
+            casts_shadows = "shadow" in visibility.visible_to
+            if made.emits() and not casts_shadows:
                 text = "it shines and is hidden from shadow rays; its far sides light what is before it"
                 report.add(place, text, Effect.LIGHT)
-            if "shadow" not in visibility.visible_to and any(own.refracts() for own in surfaces):
+            if not casts_shadows and any(own.refracts() for own in surfaces):
                 text = "it refracts and is hidden from shadow rays; Cycles counts a part of the light through it twice"
                 report.add(place, text, Effect.LIGHT)
             links = visibility.links

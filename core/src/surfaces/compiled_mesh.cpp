@@ -33,12 +33,14 @@ bool scales_evenly(const glm::dmat3& linear) {
 /// had better keep its tree when it moves. Curves and spheres that are scaled unevenly have no radius there: they are
 /// round, or turn to the ray, in their own frame, as in Cycles.
 bool is_baked(const SceneMesh& mesh) {
-    const bool is_round = mesh.shape->form != SurfaceForm::triangles;
-    if (is_round && !mesh.transforms.empty() && !scales_evenly(glm::dmat3(mesh.transforms.front()))) {
+    if (mesh.transforms.size() != 1) {
         return false;
     }
-    if (mesh.transforms.size() != 1 || mesh.shape->triangles.size() <= kMostMovedTriangles) {
-        return mesh.transforms.size() == 1;
+    if (mesh.shape->form != SurfaceForm::triangles) {
+        return scales_evenly(glm::dmat3(mesh.transforms.front()));
+    }
+    if (mesh.shape->triangles.size() <= kMostMovedTriangles) {
+        return true;
     }
     const glm::dmat4& to_world = mesh.transforms.front();
     const glm::dmat3 linear(to_world);

@@ -112,7 +112,7 @@ constexpr std::size_t kMostJoinedFaces = 1 << 19;
 constexpr double kSurrounding = 0.5;
 
 double radius_of(std::span<const EmissiveFaces> faces) {
-    Vec3d low = faces.empty() ? Vec3d(0) : faces.front().vertices.front();
+    Vec3d low = faces.front().vertices.front();
     Vec3d high = low;
     for (const EmissiveFaces& own : faces) {
         for (const Vec3d& vertex : own.vertices) {
